@@ -1,0 +1,70 @@
+// Strict reading of JSON: unknown, missing, duplicate and out-of-range entries are refused with their place.
+#pragma once
+
+#include <limits>
+#include <nlohmann/json_fwd.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nullcone {
+
+/// Parses text. `place` (a file's name) stands before every complaint. Syntax errors are reported with line and
+/// column, duplicate keys with their JSON pointer, nesting deeper than 64 is refused. UTF-8 only.
+nlohmann::json parse_json(std::string_view text, const std::string& place);
+
+/// Reads and parses a file of at most `largest` bytes.
+nlohmann::json parse_json_file(const std::string& path, std::size_t largest = std::size_t{64} << 20);
+
+/// The canonical text of a document: sorted keys, no white space, shortest round-trip numbers.
+std::string canonical_json(const nlohmann::json& document);
+
+/// An object of the document that is being read, with its JSON pointer. Each accessor marks its key as known;
+/// `finish()` refuses whatever was not asked for.
+class JsonObject {
+ public:
+  /// `value` must outlive this reader and be an object. `place` is "file" and `pointer` "/objects/0".
+  JsonObject(const nlohmann::json& value, std::string place, std::string pointer);
+
+  bool has(std::string_view key) const;
+  /// The raw value of a required key.
+  const nlohmann::json& at(std::string_view key);
+  JsonObject object(std::string_view key);
+  std::vector<JsonObject> objects(std::string_view key);  ///< a list of objects
+  std::string text(std::string_view key);
+  std::string text(std::string_view key, std::string fallback);
+  /// One of the allowed words; the complaint lists them.
+  std::string word(std::string_view key, const std::vector<std::string>& allowed);
+  std::string word(std::string_view key, const std::vector<std::string>& allowed, std::string fallback);
+  bool boolean(std::string_view key, bool fallback);
+  /// A finite number within [least, most].
+  double number(std::string_view key, double least = -kBig, double most = kBig);
+  double number_or(std::string_view key, double fallback, double least = -kBig, double most = kBig);
+  /// A finite number greater than zero.
+  double positive(std::string_view key);
+  long integer(std::string_view key, long least, long most);
+  /// A list of exactly `count` finite numbers within [least, most].
+  std::vector<double> numbers(std::string_view key, std::size_t count, double least = -kBig, double most = kBig);
+  std::vector<double> numbers_or(std::string_view key, std::vector<double> fallback, double least = -kBig,
+                                 double most = kBig);
+
+  std::vector<std::string> keys() const;
+  /// Refuses every key that nobody asked for, naming those that exist.
+  void finish() const;
+
+  /// "file: /objects/0/shape", for complaints about this object or one of its entries.
+  std::string where(std::string_view key = {}) const;
+  [[noreturn]] void refuse(std::string_view key, std::string_view message) const;
+
+  static constexpr double kBig = std::numeric_limits<double>::max();
+
+ private:
+  double checked(const nlohmann::json& value, std::string_view key, double least, double most) const;
+
+  const nlohmann::json* value_;
+  std::string place_, pointer_;
+  std::set<std::string, std::less<>> known_;
+};
+
+}  // namespace nullcone
