@@ -1,0 +1,134 @@
+// What a spacetime is, and what follows from g alone.
+//
+// Required of a metric M (a plain struct of double parameters; member functions are templates on the scalar):
+//   M::name, M::parameters          name, and a tuple of Parameter
+//   g(x) -> Matrix4                 covariant components, signature (+,-,-,-)
+// Optional, detected by the concepts below:
+//   static_tetrad(x) -> Tetrad      orthonormal frame of the natural observer (else Gram-Schmidt)
+//   path(x, k) -> Path              closed-form geodesics: Path::at(lambda) -> PathPoint
+//   to_origin(P, x), from_origin(P, x), turn(P, x)   the isometry that carries P to the origin, and back
+#pragma once
+
+#include <concepts>
+#include <string_view>
+#include <tuple>
+
+#include "core/base/dual.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// A number that a metric depends on, as scenes name it.
+template <class M>
+struct Parameter {
+  std::string_view name;
+  double M::*member;
+  double least, most;  ///< range, inclusive
+};
+
+/// e[0] is the 4-velocity of the observer, e[1..3] the spatial axes; chart components.
+template <class S>
+struct Tetrad {
+  std::array<Vec4<S>, 4> e;
+
+  /// From components in this tetrad to chart components.
+  Vec4<S> to_chart(const Vec4<S>& local) const {
+    return local[0] * e[0] + local[1] * e[1] + local[2] * e[2] + local[3] * e[3];
+  }
+};
+
+/// A point of a path: chart coordinates, chart components of the tangent, and the tangent's components in the
+/// static tetrad there.
+template <class S>
+struct PathPoint {
+  Vec4<S> event, tangent, local;
+};
+
+template <class M>
+concept Metric = requires(const M m, Vec4<double> x) {
+  { M::name } -> std::convertible_to<std::string_view>;
+  M::parameters;
+  { m.g(x) } -> std::same_as<Matrix4<double>>;
+};
+
+template <class M>
+concept HasClosedPaths = requires(const M m, Vec4<double> x) { m.path(x, x).at(1.0); };
+
+template <class M>
+concept HasIsometry = requires(const M m, Vec4<double> x) {
+  { m.to_origin(x, x) } -> std::same_as<Vec4<double>>;
+  { m.from_origin(x, x) } -> std::same_as<Vec4<double>>;
+};
+
+/// The derivatives d_k g_ij, by dual numbers: result[k][i][j].
+template <Metric M, class S>
+std::array<Matrix4<S>, 4> metric_derivatives(const M& metric, const Vec4<S>& x) {
+  using D = Dual<S, 4>;
+  const auto g = metric.g(Vec4<D>::map([&](std::size_t i) { return D::variable(x[i], i); }));
+  std::array<Matrix4<S>, 4> out;
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t i = 0; i < 4; ++i) out[k][i] = Vec4<S>::map([&](std::size_t j) { return g[i][j].d[k]; });
+  return out;
+}
+
+/// Solves m y = b for a symmetric or general 4 x 4 matrix (Gauss-Jordan with partial pivoting). One lane.
+template <std::floating_point S>
+Vec4<S> solve(Matrix4<S> m, Vec4<S> b) {
+  for (std::size_t column = 0; column < 4; ++column) {
+    std::size_t pivot = column;
+    for (std::size_t row = column + 1; row < 4; ++row)
+      if (abs(m[row][column]) > abs(m[pivot][column])) pivot = row;
+    std::swap(m[column], m[pivot]);
+    std::swap(b[column], b[pivot]);
+    const S inverse = S(1) / m[column][column];
+    for (std::size_t row = 0; row < 4; ++row) {
+      if (row == column) continue;
+      const S factor = m[row][column] * inverse;
+      m[row] = m[row] - factor * m[column];
+      b[row] -= factor * b[column];
+    }
+  }
+  return Vec4<S>::map([&](std::size_t i) { return b[i] / m[i][i]; });
+}
+
+/// The term Gamma^mu_ab u^a v^b of parallel transport, from g alone.
+template <Metric M, std::floating_point S>
+Vec4<S> connection(const M& metric, const Vec4<S>& x, const Vec4<S>& u, const Vec4<S>& v) {
+  const auto dg = metric_derivatives(metric, x);
+  const auto lower = Vec4<S>::map([&](std::size_t i) {
+    S out = 0;
+    for (std::size_t j = 0; j < 4; ++j)
+      for (std::size_t k = 0; k < 4; ++k)
+        out += S(0.5) * (dg[j][i][k] + dg[k][i][j] - dg[i][j][k]) * u[j] * v[k];
+    return out;
+  });
+  return solve(metric.g(x), lower);
+}
+
+/// Orthonormal frame from the observer at rest in the chart and the coordinate axes d_x, d_y, d_z, in this order.
+/// Not defined where d_t is not timelike.
+template <Metric M, class S>
+Tetrad<S> gram_schmidt_tetrad(const M& metric, const Vec4<S>& x) {
+  const Matrix4<S> g = metric.g(x);
+  Tetrad<S> out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Vec4<S> e;
+    for (std::size_t k = 0; k < 4; ++k) e[k] = S(k == i ? 1.0 : 0.0);
+    for (std::size_t k = 0; k < i; ++k) {
+      const S along = inner(g, e, out.e[k]);
+      e = e - (k == 0 ? along : -along) * out.e[k];
+    }
+    const S square = inner(g, e, e);
+    out.e[i] = (S(1.0) / sqrt(i == 0 ? square : -square)) * e;
+  }
+  return out;
+}
+
+template <Metric M, class S>
+Tetrad<S> static_tetrad(const M& metric, const Vec4<S>& x) {
+  if constexpr (requires { metric.static_tetrad(x); })
+    return metric.static_tetrad(x);
+  else
+    return gram_schmidt_tetrad(metric, x);
+}
+
+NULLCONE_KERNEL_END
