@@ -18,6 +18,14 @@ struct Goedel {
   static constexpr bool flat_at_infinity = false;
   static constexpr double kSqrt2 = 1.4142135623730950488;
 
+  /// Rays repeat themselves in space after 2 pi a at most; two turns show every image twice.
+  double default_lookback() const { return 12.566370614359172 * a; }
+  /// dt/dtau of the geodesic with 4-velocity u = gamma (1, beta), averaged over its revolutions.
+  double mean_rate(const Vec4<double>& u) const {
+    const double beta_x = u[1] / u[0], beta_y = u[2] / u[0];
+    return u[0] * (2 * std::sqrt(1 - 0.5 * (beta_x * beta_x + beta_y * beta_y)) - 1);
+  }
+
   /// ds^2 = (dt + A)^2 - h - dz^2, components in (t, x, y, z).
   template <class S>
   Matrix4<S> g(const Vec4<S>& X) const {

@@ -1,6 +1,8 @@
 // Flat spacetime.
 #pragma once
 
+#include <limits>
+
 #include "core/trace/metric.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -9,6 +11,10 @@ struct Minkowski {
   static constexpr std::string_view name = "minkowski";
   static constexpr std::tuple<> parameters{};
   static constexpr bool flat_at_infinity = true;  // rays escape, and a sky can be seen by direction
+
+  double default_lookback() const { return std::numeric_limits<double>::infinity(); }
+  /// dt/dtau of the worldline with 4-velocity u.
+  double mean_rate(const Vec4<double>& u) const { return u[0]; }
 
   template <class S>
   Matrix4<S> g(const Vec4<S>&) const {

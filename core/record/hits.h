@@ -7,20 +7,9 @@
 #include <tuple>
 #include <vector>
 
-namespace nullcone {
+#include "core/base/status.h"
 
-/// How a ray ended. The numbers stand in files: never reuse one.
-enum class Status : std::uint32_t {
-  hit = 0,               ///< met an opaque surface
-  sky = 1,               ///< escaped to infinity
-  captured = 2,          ///< fell into a horizon
-  left_chart = 3,        ///< left the region that the coordinates cover
-  lookback_reached = 4,  ///< met nothing within the scene's max_lookback
-  step_limit = 5,        ///< the search was given up: doubtful pixel
-  not_finite = 6,        ///< numbers broke down: doubtful pixel
-};
-inline constexpr std::array<std::string_view, 7> kStatusNames = {
-    "hit", "sky", "captured", "left_chart", "lookback_reached", "step_limit", "not_finite"};
+namespace nullcone {
 
 /// All crossings of all pixels, pixel by pixel (row by row from the top left), nearest first.
 /// The crossings of pixel i stand at offset[i] … offset[i + 1] − 1 of every column.

@@ -1,0 +1,30 @@
+// From JSON to a Scene. Strict: what is unknown, missing, double or out of range is refused with its place.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace nullcone {
+
+/// One parameter of a metric, as scenes and command lines name it.
+struct MetricParameter {
+  std::string_view name;
+  double fallback, least, most;
+};
+
+/// What the reader must know of a spacetime.
+struct MetricDescription {
+  std::string_view name;
+  std::vector<MetricParameter> parameters;
+  bool flat_at_infinity = false;
+};
+
+/// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0 where the
+/// scene does not give one: the spacetime then says what suits it. Throws InputError.
+Scene read_scene(const std::string& text, const std::string& place, std::span<const MetricDescription> metrics);
+
+}  // namespace nullcone

@@ -1,0 +1,148 @@
+// Placings: an object's frame as the search sees it (fast, over packs) and as the record sees it (exact, one lane).
+#pragma once
+
+#include "core/trace/local_frame.h"
+#include "core/trace/sight.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// Past-directed rays from one event: the tangent -k in the static tetrad there, a lane a ray.
+template <class S>
+struct RayStart {
+  Vec4<double> event;
+  Vec4<S> k;
+};
+
+/// For the search: an object at rest in the chart, or in the chart that the isometry of its worldline's event makes.
+template <Metric M>
+struct RestPlacing {
+  M metric;
+  Vec4<double> place;   ///< event of the worldline, or the place in the chart
+  bool local;           ///< whether `place` is carried to the origin
+  Matrix3<double> axes;
+  double ball;          ///< bounding radius of the shape
+
+  template <class S>
+  struct Ray {
+    const RestPlacing* placing;
+    decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{})) path;
+
+    Sight<S> at(const S& lambda) const {
+      const PathPoint<S> P = path.at(lambda);
+      const Matrix3<S> rows = {convert<S>(placing->axes[0]), convert<S>(placing->axes[1]), convert<S>(placing->axes[2])};
+      Sight<S> out;
+      out.X = spatial(P.event);
+      if (!placing->local) out.X = out.X - spatial(convert<S>(placing->place));
+      out.slope = spatial(P.tangent);
+      bound_at_rest(path, P, placing->ball, placing->local, out);
+      out.X = rows * out.X;
+      out.slope = rows * out.slope;
+      return out;
+    }
+  };
+  template <class S>
+  Ray<S> ray(const RayStart<S>& start) const {
+    if (!local) return {this, metric.path(convert<S>(start.event), start.k)};
+    const auto turn = metric.turn(place, start.event);
+    const Complex<S> w = Complex<S>{S(turn.re), S(turn.im)} * Complex<S>{start.k[1], start.k[2]};
+    const Vec4<S> k = {{start.k[0], w.re, w.im, start.k[3]}};
+    return {this, metric.path(convert<S>(metric.to_origin(place, start.event)), k)};
+  }
+};
+
+/// For the search: a rigid local object on a geodesic.
+template <Metric M>
+struct MovingPlacing {
+  LocalFrame<M> frame;
+  decltype(make_orbit(std::declval<LocalFrame<M>>(), 0.0)) orbit;
+  bool isotropic;  ///< the shape does not care how the axes turn
+
+  template <class S>
+  struct Ray {
+    const MovingPlacing* placing;
+    decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{})) path;
+    decltype(std::declval<MovingPlacing>().orbit.ray(Vec4<double>{}, Vec4<S>{})) around;
+
+    Sight<S> at(const S& lambda) const {
+      Sight<S> out;
+      S tau;
+      out.clearance = around.clearance(lambda, tau);
+      if (all(out.clearance > S(0.0))) return out;
+      const auto& orbit = placing->orbit;
+      out.slope_min = around.frequency * S(1 / orbit.stretch);
+      out.slope_max = around.frequency * S(orbit.stretch);
+      out.bend_max = around.frequency * around.frequency * S(orbit.bend);
+      locate(lambda, tau, out);
+      out.valid = max(S(orbit.farthest) - norm(out.X), S(0.02 * orbit.farthest)) / out.slope_max;
+      return out;
+    }
+
+    /// Position and slope in the rest frame: Newton's method for the proper time, and implicit differentiation.
+    void locate(const S& lambda, S tau, Sight<S>& out) const {
+      const PathPoint<S> P = path.at(lambda);
+      using D1 = Dual<S, 1>;
+      for (int i = 0; i < 2; ++i) {
+        const D1 late = placing->frame.rest(convert<D1>(P.event), D1::variable(tau, 0))[0];
+        tau = tau - late.v / late.d[0];
+      }
+      using D2 = Dual<S, 2>;  // derivatives along lambda and tau
+      const auto event =
+          Vec4<D2>::map([&](std::size_t i) { return D2(P.event[i], Vec<S, 2>{{P.tangent[i], S(0.0)}}); });
+      const D2 time(tau, Vec<S, 2>{{S(0.0), S(1.0)}});
+      const Vec4<D2> rest = placing->frame.rest(event, time);
+      const Vec3<D2> X = placing->isotropic ? spatial(rest) : placing->frame.to_object(time, spatial(rest));
+      const S last_step = -(rest[0].v / rest[0].d[1]), tau_slope = -(rest[0].d[0] / rest[0].d[1]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        out.X[i] = X[i].v + X[i].d[1] * last_step;
+        out.slope[i] = X[i].d[0] + X[i].d[1] * tau_slope;
+      }
+    }
+  };
+  template <class S>
+  Ray<S> ray(const RayStart<S>& start) const {
+    return {this, frame.metric.path(convert<S>(start.event), start.k), orbit.ray(start.event, start.k)};
+  }
+};
+
+/// For the record: lateness T' (zero at the object's proper time tau) and position X of an event, and back.
+template <Metric M>
+struct LocalBody {
+  LocalFrame<M> frame;
+  decltype(make_orbit(std::declval<LocalFrame<M>>(), 0.0)) orbit;
+
+  template <class S>
+  std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
+    const Vec4<S> rest = frame.rest(event, tau);
+    return {rest[0], frame.to_object(tau, spatial(rest))};
+  }
+  template <class S>
+  Vec4<S> event(const S& tau, const Vec3<S>& X) const {
+    return frame.event(tau, X);
+  }
+  double first_guess(const Vec4<double>& event) const { return orbit.proper_time(event); }
+};
+
+/// The same for an object that is fixed in the chart; its clocks are those of static observers.
+template <Metric M>
+struct ChartBody {
+  M metric;
+  Vec4<double> place;
+  Matrix3<double> axes;
+
+  template <class S>
+  std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
+    const Vec4<S> x = event - convert<S>(place);
+    const Matrix3<S> rows = {convert<S>(axes[0]), convert<S>(axes[1]), convert<S>(axes[2])};
+    return {sqrt(metric.g(event)[0][0]) * x[0] - tau, rows * spatial(x)};
+  }
+  template <class S>
+  Vec4<S> event(const S& tau, const Vec3<S>& X) const {
+    const Vec3<S> x = X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
+    Vec4<S> out = convert<S>(place) + Vec4<S>{{S(0.0), x[0], x[1], x[2]}};
+    out[0] = out[0] + tau / sqrt(metric.g(out)[0][0]);
+    return out;
+  }
+  double first_guess(const Vec4<double>& event) const { return event[0] - place[0]; }
+};
+
+NULLCONE_KERNEL_END

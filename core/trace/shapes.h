@@ -1,0 +1,73 @@
+// Shapes in their own frame: how far a ray may go before it can meet the surface, and texture coordinates.
+#pragma once
+
+#include <numbers>
+
+#include "core/trace/sight.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// A sphere about the origin. Seen from inside (a dome) or from outside, as the ray starts.
+struct Sphere {
+  double radius;
+  bool from_inside = false;
+  static constexpr bool isotropic = true;
+
+  double bounding_radius() const { return radius; }
+
+  /// Zero on the surface, positive on the side from which rays come; quadratic along straight lines.
+  template <class S>
+  S value(const Vec3<S>& X) const {
+    const S f = dot(X, X) - S(radius * radius);
+    return from_inside ? -f : f;
+  }
+
+  /// A step that cannot pass the surface. F = |X|^2 - R^2 has F'' = 2|X'|^2 + 2 X.X''.
+  template <class S>
+  S safe_step(const Sight<S>& ray) const {
+    const S slope = S(2.0) * dot(ray.X, ray.slope), distance = norm(ray.X);
+    const S farthest = distance + ray.slope_max * ray.valid;
+    if (from_inside) {
+      const S c = S(-2.0) * (ray.slope_max * ray.slope_max + farthest * ray.bend_max);
+      return first_root(value(ray.X), -slope, c, ray.valid);
+    }
+    const S c = S(2.0) * (ray.slope_min * ray.slope_min - farthest * ray.bend_max);
+    const S by_curve = first_root(value(ray.X), slope, c, ray.valid);
+    return max(by_curve, (distance - S(radius)) / ray.slope_max);
+  }
+
+  /// u: longitude, 0.5 at +x, growing towards +y; v: 0 at -z, 1 at +z (equirectangular).
+  static std::array<double, 2> uv(const Vec3<double>& X) {
+    constexpr double kPi = std::numbers::pi;
+    return {0.5 + atan2(X[1], X[0]) / (2 * kPi), 0.5 + atan2(X[2], sqrt(X[0] * X[0] + X[1] * X[1])) / kPi};
+  }
+};
+
+/// A rectangle in the xy plane, centred, with edges along x and y; its normal is +z. Seen from both sides.
+struct Quad {
+  double half_x, half_y;
+  static constexpr bool isotropic = false;
+
+  double bounding_radius() const { return sqrt(half_x * half_x + half_y * half_y); }
+
+  template <class S>
+  S value(const Vec3<S>& X) const {
+    return X[2];
+  }
+
+  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest speed.
+  template <class S>
+  S safe_step(const Sight<S>& ray) const {
+    const S out_x = max(abs(ray.X[0]) - S(half_x), S(0.0)), out_y = max(abs(ray.X[1]) - S(half_y), S(0.0));
+    const S distance = sqrt(out_x * out_x + out_y * out_y + ray.X[2] * ray.X[2]);
+    const S slope = select(ray.X[2] < S(0.0), -ray.slope[2], ray.slope[2]);
+    const S by_plane = first_root(abs(ray.X[2]), slope, -ray.bend_max, ray.valid);
+    return max(by_plane, distance / ray.slope_max);
+  }
+
+  std::array<double, 2> uv(const Vec3<double>& X) const {
+    return {0.5 + 0.5 * X[0] / half_x, 0.5 + 0.5 * X[1] / half_y};
+  }
+};
+
+NULLCONE_KERNEL_END

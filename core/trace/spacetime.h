@@ -1,0 +1,82 @@
+// The cold side of a kernel: a spacetime by name, one virtual call a band of pixels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/read_scene.h"
+
+namespace nullcone {
+
+/// Scan lines a band: the unit of work, of writing and of memory.
+inline constexpr int kBandLines = 16;
+
+/// One crossing, in full precision; files keep floats of it (core/record/hits.h has the meanings).
+struct HitRecord {
+  std::uint32_t pixel;  ///< within the band
+  std::uint32_t id, order;
+  double Z, u, v, shift, t, tau, mu;
+};
+
+struct RayRecord {
+  std::uint32_t status, steps;
+  float error, drift;
+};
+
+/// Room for the records of a band, given by the caller: one hit and one ray a pixel.
+struct BandRoom {
+  std::span<HitRecord> hits;
+  std::span<RayRecord> rays;
+};
+
+/// A scene made ready for one kernel. Immutable: any number of threads may trace bands of it.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  /// Traces `lines` (<= kBandLines) scan lines from `first_line` on; returns how many hits were written.
+  virtual std::size_t trace_band(int first_line, int lines, const BandRoom& room) const = 0;
+  /// Proper time that the channel `tau` of object number `object` (from 0) counts from.
+  virtual double tau_origin(std::size_t object) const = 0;
+};
+
+/// Why an object cannot be traced; `limit` is the bounding radius that would do, where that helps.
+struct Unfit {
+  std::size_t object;
+  const char* reason;
+  double limit;
+};
+
+struct GeodesicPoint {
+  double lambda;
+  Event event, tangent;
+};
+struct NamedValue {
+  std::string_view name;
+  double value;
+};
+
+/// A compiled kernel: stateless; the metric's parameters are given with each call, in the order of parameters().
+class Spacetime {
+ public:
+  virtual ~Spacetime() = default;
+  virtual MetricDescription description() const = 0;
+  virtual std::string_view isa() const = 0;
+  virtual double default_lookback(std::span<const double> parameters) const = 0;
+
+  /// Axes e_0 … e_3 of the static tetrad at an event, in chart components.
+  virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters, const Event& event) const = 0;
+  /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter.
+  virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event, const Event& k,
+                                              std::span<const double> lambda) const = 0;
+  /// Constants of motion of the geodesic through the point.
+  virtual std::vector<NamedValue> conserved(std::span<const double> parameters, const GeodesicPoint& point) const = 0;
+
+  /// Makes a scene ready, or fills `unfit` and returns nothing.
+  virtual std::unique_ptr<Tracer> prepare(std::span<const double> parameters, const Scene& scene,
+                                          Unfit& unfit) const = 0;
+};
+
+}  // namespace nullcone

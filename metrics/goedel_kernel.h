@@ -1,0 +1,5 @@
+// All that the kernel of the Gödel universe is made of.
+#pragma once
+
+#include "metrics/goedel_orbit.h"
+#include "metrics/goedel_sight.h"

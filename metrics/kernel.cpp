@@ -1,0 +1,228 @@
+// One spacetime for one instruction set: compiled once for each pair, see CMakeLists.txt.
+#include NULLCONE_METRIC_HEADER
+
+#include "core/trace/kernel.h"
+
+NULLCONE_KERNEL_BEGIN
+
+using M = NULLCONE_METRIC;
+
+M make_metric(std::span<const double> values) {
+  M metric;
+  std::size_t i = 0;
+  std::apply([&](const auto&... parameter) { ((metric.*parameter.member = values[i++]), ...); }, M::parameters);
+  return metric;
+}
+
+template <class PlacingOrBody>
+Matrix3<double> axes_of(const PlacingOrBody& placing) {
+  return {Vec3<double>{placing.axes[0]}, Vec3<double>{placing.axes[1]}, Vec3<double>{placing.axes[2]}};
+}
+
+/// The shape and placing of an object, resolved to types once.
+template <class Shape>
+AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape) {
+  const double ball = shape.bounding_radius();
+  const Vec4<double> event{placing.worldline.event};
+  const Matrix3<double> axes = axes_of(placing);
+  if (placing.type == PlacingType::coordinate)
+    return Placed<RestPlacing<M>, ChartBody<M>, Shape>{{metric, event, false, axes, ball}, {metric, event, axes}, shape};
+
+  const bool at_rest = placing.worldline.is_static();
+  LocalFrame<M> frame{metric, event, four_velocity(Vec3<double>{placing.worldline.velocity}), placing.gyroscope_axes,
+                      {}, axes};
+  if (frame.gyroscope) frame.prepare();
+  const LocalBody<M> body{frame, make_orbit(frame, ball)};
+  if (at_rest && (Shape::isotropic || !frame.gyroscope))
+    return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, ball}, body, shape};
+  return Placed<MovingPlacing<M>, LocalBody<M>, Shape>{{frame, body.orbit, Shape::isotropic}, body, shape};
+}
+
+/// Whether every point of the bounding sphere can move with the object: its 4-velocity must be timelike.
+template <class Body>
+bool moves_timelike(const M& metric, const Body& body, double ball) {
+  using D = Dual<double, 1>;
+  for (int n = 0; n < 64; ++n) {
+    const double z = (2 * n + 1.0) / 64 - 1, flat = std::sqrt(1 - z * z);
+    const auto [s, c] = sincos(2.399963229728653 * n);
+    const Vec4<D> x = body.event(D::variable(0.0, 0), Vec3<D>{{D(ball * flat * c), D(ball * flat * s), D(ball * z)}});
+    const auto event = Vec4<double>::map([&](std::size_t i) { return x[i].v; });
+    const auto u = Vec4<double>::map([&](std::size_t i) { return x[i].d[0]; });
+    if (!(inner(metric.g(event), u, u) > 0)) return false;
+  }
+  return true;
+}
+
+class SceneTracer final : public Tracer {
+ public:
+  SceneTracer(const M& metric, const Scene& scene)
+      : metric_(metric), camera_(scene.camera), observation_{scene.observer.event},
+        u_camera_(four_velocity(Vec3<double>{scene.observer.velocity})), lookback_(scene.max_lookback),
+        count_(scene.objects.size()), objects_(new AnyPlaced<M>[count_]), origins_(new double[count_]) {
+    resolution_ = 4e-15 * norm(spatial(observation_));
+  }
+
+  /// Makes the objects ready; false, with the reason, for the first that cannot be traced.
+  bool place_objects(const Scene& scene, Unfit& unfit) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Object& object = scene.objects[i];
+      unfit.object = i;
+      origins_[i] = observation_[0] - object.placing.worldline.event[0];
+      if (object.shape.type == ShapeType::sky) {
+        sky_ = static_cast<std::uint32_t>(i + 1);
+        continue;
+      }
+      if (object.placing.type == PlacingType::local)
+        origins_[i] /= metric_.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
+      if (object.shape.type == ShapeType::quad)
+        objects_[i] = place(metric_, object.placing, Quad{0.5 * object.shape.edges[0], 0.5 * object.shape.edges[1]});
+      else
+        objects_[i] = place(metric_, object.placing, Sphere{object.shape.radius, object.shape.dome});
+      if (!std::visit([&](const auto& placed) { return check(placed, object.shape, unfit); }, objects_[i])) return false;
+    }
+    return true;
+  }
+
+  std::size_t trace_band(int first_line, int lines, const BandRoom& room) const override {
+    const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera_.width);
+    BandRays rays(pixels);
+    aim<Pack>(camera_, u_camera_, first_line, lookback_, rays);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const auto number = static_cast<std::uint32_t>(i + 1);
+      if (number == sky_) continue;
+      std::visit([&](const auto& placed) { search<Pack>(placed, number, observation_, resolution_, rays); },
+                 objects_[i]);
+    }
+    return write(rays, room);
+  }
+
+  double tau_origin(std::size_t object) const override { return origins_[object]; }
+
+ private:
+  template <class P>
+  bool check(const P& placed, const Shape& shape, Unfit& unfit) {
+    if constexpr (requires { placed.placing.orbit; })
+      if (!placed.placing.orbit.fits()) {
+        unfit.reason = "is too large for its speed: a rigid local frame does not reach that far";
+        unfit.limit = placed.placing.orbit.largest_ball();
+        return false;
+      }
+    if (!moves_timelike(metric_, placed.body, placed.shape.bounding_radius())) {
+      unfit.reason = "is too large: parts of it would have to move faster than light";
+      return false;
+    }
+    const Meeting here = meet(placed.body, placed.shape, observation_, placed.body.first_guess(observation_));
+    if (shape.type == ShapeType::sphere && shape.dome && !(here.value > 0)) {
+      unfit.reason = "is a dome, but the observer stands outside it";
+      return false;
+    }
+    if (shape.type == ShapeType::sphere && !shape.dome && here.value <= 0) {
+      unfit.reason = "holds the observer; a sphere that is seen from inside needs \"dome\": true";
+      return false;
+    }
+    return true;
+  }
+
+  std::size_t write(const BandRays& rays, const BandRoom& room) const {
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < rays.count; ++i) {
+      const Vec4<double> past = {{rays.k[0][i], rays.k[1][i], rays.k[2][i], rays.k[3][i]}};
+      const std::uint32_t number = rays.nearest[i];
+      Status status = lookback_ < 1e300 ? Status::lookback_reached : Status::sky;
+      if (number != 0) {
+        status = Status::hit;
+        HitRecord hit = std::visit(
+            [&](const auto& placed) {
+              return record(metric_, placed, observation_, past, rays.limit[i], origins_[number - 1]);
+            },
+            objects_[number - 1]);
+        hit.pixel = static_cast<std::uint32_t>(i);
+        hit.id = number;
+        if (!finite(hit)) status = Status::not_finite;
+        else room.hits[hits++] = hit;
+      } else if (status == Status::sky && sky_ != 0) {
+        room.hits[hits++] = sky_record(past, static_cast<std::uint32_t>(i));
+      }
+      if (rays.doubtful[i]) status = Status::step_limit;
+      room.rays[i] = {static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(rays.steps[i]), 0.0F, 0.0F};
+    }
+    return hits;
+  }
+
+  static bool finite(const HitRecord& hit) {
+    return std::isfinite(hit.Z + hit.u + hit.v + hit.shift + hit.t + hit.tau + hit.mu);
+  }
+
+  /// The sky at infinity, by direction in the static frame: infinitely far and long ago.
+  HitRecord sky_record(const Vec4<double>& past, std::uint32_t pixel) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const auto [u, v] = Sphere::uv(spatial(past));
+    return {pixel, sky_, 0, kInfinity, u, v, -1 / past[0], -kInfinity, -kInfinity, 1};
+  }
+
+  M metric_;
+  Camera camera_;
+  Vec4<double> observation_, u_camera_;
+  double lookback_;
+  std::size_t count_;
+  std::unique_ptr<AnyPlaced<M>[]> objects_;
+  std::unique_ptr<double[]> origins_;
+  std::uint32_t sky_ = 0;
+  double resolution_ = 0;
+};
+
+class Kernel final : public Spacetime {
+ public:
+  std::string_view isa() const override { return NULLCONE_ISA_NAME; }
+  MetricDescription description() const override {
+    MetricDescription out{M::name, {}, M::flat_at_infinity};
+    const M defaults;
+    std::apply(
+        [&](const auto&... p) { (out.parameters.push_back({p.name, defaults.*p.member, p.least, p.most}), ...); },
+        M::parameters);
+    return out;
+  }
+  double default_lookback(std::span<const double> values) const override {
+    return make_metric(values).default_lookback();
+  }
+
+  std::array<Event, 4> static_tetrad(std::span<const double> values, const Event& event) const override {
+    const auto tetrad = NULLCONE_ISA::static_tetrad(make_metric(values), Vec4<double>{event});
+    return {tetrad.e[0].c, tetrad.e[1].c, tetrad.e[2].c, tetrad.e[3].c};
+  }
+  std::vector<GeodesicPoint> geodesic(std::span<const double> values, const Event& event, const Event& k,
+                                      std::span<const double> lambda) const override {
+    const M metric = make_metric(values);
+    const auto path = metric.path(Vec4<double>{event}, Vec4<double>{k});
+    std::vector<GeodesicPoint> out;
+    for (const double l : lambda) {
+      const auto P = path.at(l);
+      out.push_back({l, P.event.c, P.tangent.c});
+    }
+    return out;
+  }
+  std::vector<NamedValue> conserved(std::span<const double> values, const GeodesicPoint& point) const override {
+    std::vector<NamedValue> out;
+    for (const auto& [name, value] :
+         make_metric(values).conserved(Vec4<double>{point.event}, Vec4<double>{point.tangent}))
+      out.push_back({name, value});
+    return out;
+  }
+
+  std::unique_ptr<Tracer> prepare(std::span<const double> values, const Scene& scene, Unfit& unfit) const override {
+    auto tracer = std::make_unique<SceneTracer>(make_metric(values), scene);
+    if (!tracer->place_objects(scene, unfit)) return nullptr;
+    return tracer;
+  }
+};
+
+NULLCONE_KERNEL_END
+
+namespace nullcone {
+
+const Spacetime& NULLCONE_FACTORY() {
+  static const NULLCONE_ISA::Kernel kernel;
+  return kernel;
+}
+
+}  // namespace nullcone

@@ -1,0 +1,4 @@
+// All that the kernel of flat spacetime is made of.
+#pragma once
+
+#include "metrics/minkowski_sight.h"

@@ -1,0 +1,35 @@
+// Pictures in memory: linear colours, row by row from the top left.
+#pragma once
+
+#include <vector>
+
+namespace nullcone::postrender {
+
+/// A colour in linear sRGB (Rec. 709 primaries, D65 white). May leave [0, 1] until it is developed.
+struct Rgb {
+  float r = 0, g = 0, b = 0;
+  bool operator==(const Rgb&) const = default;
+};
+
+constexpr Rgb operator+(Rgb a, Rgb b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
+constexpr Rgb operator-(Rgb a, Rgb b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
+constexpr Rgb operator*(Rgb a, Rgb b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+constexpr Rgb operator*(float s, Rgb a) { return {s * a.r, s * a.g, s * a.b}; }
+constexpr Rgb mix(Rgb a, Rgb b, float s) { return a + s * (b - a); }
+
+/// What shading yields, before exposure. Its two parts add up once the white is known:
+/// colour = display + physical / white_cd_m2.
+struct Radiance {
+  std::vector<Rgb> display;   ///< relative: 1 is white by definition
+  std::vector<Rgb> physical;  ///< cd/m^2; empty when nothing in the look is physical
+};
+
+/// A developed picture.
+struct Image {
+  int width = 0, height = 0;
+  double white_cd_m2 = 1;    ///< the luminance shown as 1 at ev = 0; 1 when nothing is physical
+  std::vector<Rgb> exposed;  ///< after exposure, before tone curve and gamut mapping: for EXR files
+  std::vector<Rgb> display;  ///< linear, within [0, 1]: for screens, PNG and JPEG
+};
+
+}  // namespace nullcone::postrender

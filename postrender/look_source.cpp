@@ -1,0 +1,104 @@
+#include "postrender/look_source.h"
+
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+
+namespace nullcone::postrender {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t kDeepestPath = 32;
+
+std::vector<std::string> split_path(const std::string& path, const std::string& place) {
+  const bool pointer = path.find('/') != std::string::npos;
+  std::vector<std::string> keys = {{}};
+  for (std::size_t i = pointer && path[0] == '/' ? 1 : 0; i < path.size(); ++i) {
+    const bool escaped =
+        pointer && path[i] == '~' && i + 1 < path.size() && (path[i + 1] == '0' || path[i + 1] == '1');
+    if (path[i] == (pointer ? '/' : '.')) {
+      keys.emplace_back();
+    } else if (escaped) {
+      keys.back() += path[++i] == '0' ? '~' : '/';
+    } else {
+      keys.back() += path[i];
+    }
+  }
+  for (const std::string& key : keys)
+    if (key.empty()) throw InputError(place, "an empty step in the path; expected path=value");
+  if (keys.size() > kDeepestPath) throw InputError(place, "the path is deeper than 32 steps");
+  return keys;
+}
+
+json parse_value(const std::string& text, const std::string& place) {
+  try {
+    return parse_json(text, place);
+  } catch (const InputError&) {
+    // A broken list or object is a mistake; anything else is meant as a text.
+    if (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"')) throw;
+    return text;
+  }
+}
+
+json& list_entry(json& list, const std::string& key, const std::string& place) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+  if (error != std::errc() || end != key.data() + key.size() || index >= list.size())
+    throw InputError(place,
+                     "no entry '" + printable(key, 40) + "' in a list of " + std::to_string(list.size()));
+  return list[index];
+}
+
+std::string folder_of(const std::string& file) { return std::filesystem::path(file).parent_path().string(); }
+
+}  // namespace
+
+void set_entry(json& look, const std::string& assignment) {
+  const std::string place = "--set " + printable(assignment, 80);
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos) throw InputError(place, "expected path=value");
+  const std::vector<std::string> keys = split_path(assignment.substr(0, equals), place);
+
+  // Step 1: walk through what is there; from where nothing is, the rest becomes a patch.
+  json* at = &look;
+  std::size_t done = 0;
+  while (done < keys.size()) {
+    if (at->is_array()) {
+      at = &list_entry(*at, keys[done++], place);
+    } else if (at->is_object() && at->contains(keys[done]) && done + 1 < keys.size()) {
+      at = &(*at)[keys[done++]];
+    } else {
+      break;
+    }
+  }
+  // Step 2: wrap the value in the objects that are missing, and merge.
+  json patch = parse_value(assignment.substr(equals + 1), place);
+  for (std::size_t i = keys.size(); i > done; --i) {
+    json outer = json::object();
+    outer[keys[i - 1]] = std::move(patch);
+    patch = std::move(outer);
+  }
+  at->merge_patch(patch);
+}
+
+Look read_look(const Manifest& manifest, const std::string& dataset_file, const std::string& look_file,
+               const std::vector<std::string>& settings) {
+  json document = json::object();
+  LookSource source{dataset_file, "/look", folder_of(dataset_file)};
+  if (!look_file.empty()) {
+    document = parse_json_file(look_file);
+    source = {look_file, "", folder_of(look_file)};
+  } else if (!manifest.scene.empty()) {
+    const json scene = parse_json(manifest.scene, dataset_file);
+    if (scene.is_object() && scene.contains("look")) document = scene["look"];
+  }
+  for (const std::string& setting : settings) set_entry(document, setting);
+  return parse_look(document, source, manifest);
+}
+
+}  // namespace nullcone::postrender

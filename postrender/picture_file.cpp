@@ -1,0 +1,100 @@
+#include "postrender/picture_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "postrender/color.h"
+
+namespace nullcone::postrender {
+
+namespace {
+
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+namespace fs = std::filesystem;
+
+static_assert(sizeof(Rgb) == 3 * sizeof(float), "pictures go to files as they lie in memory");
+
+/// OpenImageIO's name of the format, or an empty text.
+std::string format_of(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  if (ending == ".png") return "png";
+  if (ending == ".jpg" || ending == ".jpeg") return "jpeg";
+  return ending == ".exr" ? "openexr" : "";
+}
+
+/// A file that is removed unless it is renamed into place.
+class PartFile {
+ public:
+  explicit PartFile(const std::string& path)
+      : path_(path), part_(path + ".part" + std::to_string(::getpid())) {}
+  ~PartFile() {
+    std::error_code ignored;
+    if (!done_) fs::remove(part_, ignored);
+  }
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  const std::string& name() const { return part_; }
+  void rename() {
+    std::error_code error;
+    fs::rename(part_, path_, error);
+    if (error) throw WorkError(path_, "cannot be put in place: " + error.message());
+    done_ = true;
+  }
+
+ private:
+  std::string path_, part_;
+  bool done_ = false;
+};
+
+ImageSpec spec_of(const Image& image, const std::string& format, TypeDesc type) {
+  ImageSpec spec(image.width, image.height, 3, type);
+  spec.attribute("oiio:ColorSpace", format == "openexr" ? "Linear" : "sRGB");
+  if (format == "jpeg") spec.attribute("Compression", "jpeg:95");
+  if (format == "jpeg") spec.attribute("jpeg:subsampling", "4:4:4");
+  if (format == "openexr") spec.attribute("compression", "zip");
+  return spec;
+}
+
+void write(const std::string& path, const std::string& part, const std::string& format, const ImageSpec& spec,
+           const void* pixels) {
+  const std::unique_ptr<ImageOutput> out = ImageOutput::create(format);
+  if (!out) throw WorkError(path, "this build of OpenImageIO cannot write " + format);
+  const bool written = out->open(part, spec) && out->write_image(spec.format, pixels) && out->close();
+  if (!written) throw WorkError(path, "cannot be written: " + out->geterror());
+}
+
+}  // namespace
+
+void check_picture_name(const std::string& path, int bits) {
+  const std::string format = format_of(path);
+  if (format.empty()) throw InputError(path, "unknown kind of picture; expected .png, .jpg, .jpeg or .exr");
+  if (bits != 8 && bits != 16) throw InputError("--bits", "expected 8 or 16");
+  if (bits == 16 && format != "png") throw InputError("--bits", "16 bits need a .png file");
+}
+
+void write_picture(const std::string& path, const Image& image, int bits) {
+  check_picture_name(path, bits);
+  const std::string format = format_of(path);
+  PartFile part(path);
+  if (format == "openexr") {
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::FLOAT), image.exposed.data());
+  } else if (bits == 16) {
+    const auto encoded = encode_srgb16(image.display);
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT16), encoded.data());
+  } else {
+    const auto encoded = encode_srgb8(image.display);
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT8), encoded.data());
+  }
+  part.rename();
+}
+
+}  // namespace nullcone::postrender

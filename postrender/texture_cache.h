@@ -1,0 +1,29 @@
+// Textures that stay in memory from one look to the next.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "postrender/texture.h"
+
+namespace nullcone::postrender {
+
+/// Keeps textures by path, and reads a file again when its time or size has changed.
+class TextureCache {
+ public:
+  /// Throws InputError as read_texture() does.
+  std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer);
+
+  /// Forgets textures that nobody else holds, while they take more than `most_bytes` together.
+  void prune(std::size_t most_bytes = std::size_t{1} << 30);
+
+ private:
+  struct Entry {
+    std::string stamp;  ///< time and size of the file
+    std::shared_ptr<const Pyramid> image;
+  };
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace nullcone::postrender

@@ -1,0 +1,19 @@
+// Textures from picture files, by OpenImageIO.
+#pragma once
+
+#include <string>
+
+#include "postrender/texture.h"
+
+namespace nullcone::postrender {
+
+inline constexpr int kLargestTextureSide = 32768;
+inline constexpr std::size_t kLargestTextureBytes = std::size_t{1} << 30;  ///< of linear floats, 12 a texel
+
+/// Reads JPEG, PNG, TIFF, OpenEXR or Radiance HDR, told apart by their first bytes, never by the name. 8 and
+/// 16 bit images are decoded from sRGB, float images are taken as linear. Grey is spread, alpha is ignored.
+/// `pointer` ("/objects/earth/texture/file") stands in complaints. Throws InputError "file: pointer: ..." for
+/// whatever is not such a picture, is cut off, or is larger than the limits above.
+TextureLevel read_texture(const std::string& path, const std::string& pointer);
+
+}  // namespace nullcone::postrender

@@ -1,0 +1,135 @@
+// Colour and black bodies against the reference cases of PHYSICS.md sections 9 and 11.
+#include <cmath>
+
+#include "postrender/black_body.h"
+#include "postrender/cie1931.h"
+#include "postrender/color.h"
+#include "tests/postrender_fixture.h"
+
+namespace nullcone::postrender {
+namespace {
+
+/// Within the case's own tolerance.
+void expect_close(double found, double expected, const nlohmann::json& tolerance) {
+  const double allowed = tolerance.value("rel", 0.0) * std::abs(expected) + tolerance.value("abs", 0.0);
+  EXPECT_NEAR(found, expected, allowed);
+}
+
+TEST(Color, matrix_follows_from_primaries_and_white) {
+  const auto one = reference_case("color.srgb_matrix");
+  const auto& expected = one["expected"]["XYZ_to_linear_sRGB"];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) expect_close(xyz_to_srgb()[i][j], expected[i][j], one["tol"]);
+}
+
+TEST(Color, luminance_weights_are_the_middle_row_of_the_inverse) {
+  // The XYZ of each primary, through the matrix, must give the primary back; its Y is the weight.
+  const std::array<std::array<double, 2>, 3> primaries = {{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}};
+  const std::array<float, 3> weights = {luminance({1, 0, 0}), luminance({0, 1, 0}), luminance({0, 0, 1})};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [x, y] = primaries[i];
+    const double Y = static_cast<double>(weights[i]);
+    EXPECT_NEAR(linear_srgb({Y * x / y, Y, Y * (1 - x - y) / y})[i], 1, 1e-6);  // weights are floats
+  }
+}
+
+TEST(Color, matching_functions_have_the_sums_of_the_cie_table) {
+  const auto one = reference_case("color.equal_energy");
+  for (std::size_t j = 0; j < 3; ++j) {
+    double sum = 0;
+    for (const auto& sample : kCie1931) sum += kCmfStep_nm * sample[j];
+    expect_close(sum, one["expected"]["sum_times_5nm"][j], one["tol"]);
+  }
+}
+
+TEST(Color, eight_bit_encoding_rounds_the_exact_curve) {
+  for (int i = 0; i <= 200000; ++i) {
+    const float linear = static_cast<float>(i) / 200000;
+    const double exact = 255 * srgb_encoded(static_cast<double>(linear));
+    const Rgb c{linear, linear, linear};
+    const int code = encode_srgb8({&c, 1})[0];
+    EXPECT_LE(std::abs(code - exact), 0.5 + 1e-4) << linear;  // thresholds are floats: 1e-7 * 3295 codes
+  }
+  const Rgb wild{-1, 2, std::nanf("")};
+  EXPECT_EQ(encode_srgb8({&wild, 1}), (std::vector<std::uint8_t>{0, 255, 0}));
+}
+
+TEST(Color, every_code_survives_decoding_and_encoding) {
+  for (int code = 0; code < 256; ++code) {
+    const auto linear = static_cast<float>(srgb_decoded(code / 255.0));
+    const Rgb c{linear, linear, linear};
+    EXPECT_EQ(encode_srgb8({&c, 1})[1], code);
+    EXPECT_EQ(encode_srgb16({&c, 1})[2], code * 257);
+  }
+}
+
+class BlackBodyColor : public testing::TestWithParam<int> {};
+
+TEST_P(BlackBodyColor, agrees_with_the_5_nm_sum) {
+  const auto one = reference_case("color.blackbody." + std::to_string(GetParam()));
+  const auto& expected = one["expected"]["cie1931_5nm_sum"];
+  const Xyz xyz = black_body_xyz(GetParam());
+  const double sum = xyz[0] + xyz[1] + xyz[2];
+  expect_close(xyz[0] / sum, expected["xy"][0], one["tol"]);
+  expect_close(xyz[1] / sum, expected["xy"][1], one["tol"]);
+  const auto rgb = linear_srgb({xyz[0] / xyz[1], 1, xyz[2] / xyz[1]});
+  for (std::size_t j = 0; j < 3; ++j) expect_close(rgb[j], expected["linear_sRGB_Y1"][j], one["tol"]);
+  expect_close(xyz[1], one["expected"]["luminance_cd_m2_5nm_sum"], one["tol"]);
+}
+INSTANTIATE_TEST_SUITE_P(Cases, BlackBodyColor, testing::Values(1000, 2000, 5762, 10000, 26000));
+
+class ShiftedPlanck : public testing::TestWithParam<int> {};
+
+TEST_P(ShiftedPlanck, is_planck_of_the_shifted_temperature) {
+  const auto one = reference_case("sr.blackbody." + std::to_string(GetParam()));
+  const auto& in = one["inputs"];
+  const auto& out = one["expected"];
+  const double T = in["T_emit_K"], g = in["g"], seen_m = in["lambda_obs_m"];
+  expect_close(planck_W_m3_sr(g * seen_m, T), out["B_emit_W_m3_sr"], one["tol"]);
+  expect_close(planck_W_m3_sr(seen_m, g * T), out["B_obs_W_m3_sr"], one["tol"]);
+  expect_close(std::pow(g, 5) * planck_W_m3_sr(g * seen_m, T), out["B_obs_W_m3_sr"], one["tol"]);
+}
+INSTANTIATE_TEST_SUITE_P(Cases, ShiftedPlanck, testing::Values(1, 2, 3));
+
+TEST(BlackBodyTable, interpolates_within_3e_5_of_the_luminance) {
+  // Linear interpolation of ln Y over ln T errs by h^2/8 * 20500 K/T: 2e-5 at 256 K with h = ln 2/512; the
+  // rest is float. 13 temperatures an interval would repeat themselves: steps incommensurable with the nodes
+  // do not.
+  double worst = 0;
+  for (double T = BlackBodyTable::kColdest_K; T < 3e8; T *= 1.000331) {
+    const Xyz exact_xyz = black_body_xyz(T);
+    const auto exact = linear_srgb(exact_xyz);
+    const Rgb found = BlackBodyTable::instance().color_cd_m2(T);
+    // In the float range only.
+    if (exact_xyz[1] < 1e-30) continue;
+    // Chromaticity matters in proportion to the largest component (up to 5 Y in the reddest light).
+    const double scale = std::max({std::abs(exact[0]), exact[1], exact[2]});
+    worst = std::max({worst, std::abs(static_cast<double>(found.r) - exact[0]) / scale,
+                      std::abs(static_cast<double>(found.g) - exact[1]) / scale,
+                      std::abs(static_cast<double>(found.b) - exact[2]) / scale});
+  }
+  EXPECT_LT(worst, 3e-5);
+  EXPECT_GT(worst, 1e-7) << "suspiciously good: is anything compared?";
+  RecordProperty("worst_relative_error", std::to_string(worst));
+}
+
+TEST(BlackBodyTable, is_black_in_the_cold_and_linear_in_the_heat) {
+  const BlackBodyTable& table = BlackBodyTable::instance();
+  EXPECT_EQ(table.color_cd_m2(255), Rgb{});
+  EXPECT_EQ(table.color_cd_m2(-5), Rgb{});
+  EXPECT_EQ(table.color_cd_m2(std::nan("")), Rgb{});
+  // Rayleigh-Jeans: the next term of Planck's law is hc/(2 lambda k T) = 1e-5 at 1e9 K.
+  const double ratio = static_cast<double>(luminance(table.color_cd_m2(8e9))) / black_body_xyz(8e9)[1];
+  EXPECT_NEAR(ratio, 1, 3e-5);
+}
+
+TEST(Color, default_colors_differ) {
+  for (std::uint32_t a = 1; a <= 12; ++a)
+    for (std::uint32_t b = 1; b < a; ++b) {
+      const Rgb d = default_color(a) - default_color(b);
+      EXPECT_GT(d.r * d.r + d.g * d.g + d.b * d.b, 1e-3f) << a << " and " << b;
+    }
+}
+
+}  // namespace
+}  // namespace nullcone::postrender

@@ -1,0 +1,176 @@
+// The look: strictness, defaults, inheritance, and overrides.
+#include "postrender/color.h"
+#include "postrender/look_source.h"
+#include "tests/postrender_fixture.h"
+
+namespace nullcone::postrender {
+namespace {
+
+using nlohmann::json;
+
+Manifest two_objects() {
+  Manifest manifest;
+  manifest.objects = {{"earth"}, {"moon"}};
+  return manifest;
+}
+
+struct BadLook {
+  const char* text;
+  const char* pointer;  ///< must stand in the complaint
+};
+
+class BadLooks : public testing::TestWithParam<BadLook> {};
+
+TEST_P(BadLooks, are_refused_with_their_place) {
+  const auto [text, pointer] = GetParam();
+  const std::string found = complaint([&] { look_of(text, two_objects()); });
+  EXPECT_NE(found.find("look.json: " + std::string(pointer) + ":"), std::string::npos)
+      << text << "\n-> " << found;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    List, BadLooks,
+    testing::Values(
+        BadLook{R"([])", "/"}, BadLook{R"({"object":{}})", "/object"},
+        BadLook{R"({"objects":[]})", "/objects"}, BadLook{R"({"objects":{"mars":{}}})", "/objects/mars"},
+        BadLook{R"({"objects":{"earth":{"textur":{}}}})", "/objects/earth/textur"},
+        BadLook{R"({"objects":{"earth":{"texture":{}}}})", "/objects/earth/texture/type"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"marble"}}}})", "/objects/earth/texture/type"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"color","rgb":[1,2,0]}}}})",
+                "/objects/earth/texture/rgb/1"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"color","rgb":[1,0]}}}})",
+                "/objects/earth/texture/rgb"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"image"}}}})", "/objects/earth/texture/file"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"image","file":"a.png","filter":"cubic"}}}})",
+                "/objects/earth/texture/filter"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"image","file":"a.png","offset":[0]}}}})",
+                "/objects/earth/texture/offset"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[4,2]}}}})",
+                "/objects/earth/texture"},
+        BadLook{
+            R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[4,2.5],"colors":[[0,0,0],[1,1,1]]}}}})",
+            "/objects/earth/texture/counts/1"},
+        BadLook{
+            R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[4,2],"colors":[[0,0,0],[1,1,7]]}}}})",
+            "/objects/earth/texture/colors/1"},
+        BadLook{R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[4,2],
+                   "gradient":{"along":"w","from":[1,1,0],"to":[0,0,1]}}}}})",
+                "/objects/earth/texture/gradient/along"},
+        BadLook{R"({"objects":{"earth":{"spectrum":{"type":"black_body"}}}})",
+                "/objects/earth/spectrum/temperature_K"},
+        BadLook{R"({"objects":{"earth":{"spectrum":{"type":"black_body","temperature_K":-3}}}})",
+                "/objects/earth/spectrum/temperature_K"},
+        BadLook{R"({"objects":{"earth":{"spectrum":{"type":"display","temperature_K":300}}}})",
+                "/objects/earth/spectrum/temperature_K"},
+        BadLook{R"({"objects":{"earth":{"time_slices":{}}}})", "/objects/earth/time_slices"},
+        BadLook{
+            R"({"objects":{"earth":{"time_slices":[{"channel":"z","texture":{"type":"color","rgb":[1,1,1]}}]}}})",
+            "/objects/earth/time_slices/0/channel"},
+        BadLook{R"({"objects":{"earth":{"time_slices":[{"channel":"t","from":1,"to":1,
+                   "texture":{"type":"color","rgb":[1,1,1]}}]}}})",
+                "/objects/earth/time_slices/0/to"},
+        BadLook{R"({"objects":{"earth":{"time_slices":[{"channel":"t","from":1}]}}})",
+                "/objects/earth/time_slices/0"},
+        BadLook{R"({"effects":{"doppler":1}})", "/effects/doppler"},
+        BadLook{R"({"effects":{"dopler":true}})", "/effects/dopler"},
+        BadLook{R"({"exposure":{"white_cd_m2":"bright"}})", "/exposure/white_cd_m2"},
+        BadLook{R"({"exposure":{"white_cd_m2":0}})", "/exposure/white_cd_m2"},
+        BadLook{R"({"exposure":{"ev":"1"}})", "/exposure/ev"},
+        BadLook{R"({"tone":{"curve":"filmic"}})", "/tone/curve"},
+        BadLook{R"({"tone":{"curve":"linear","k":2}})", "/tone/k"},
+        BadLook{R"({"tone":{"curve":"exponential","k":0}})", "/tone/k"},
+        BadLook{R"({"gamut":"none"})", "/gamut"}, BadLook{R"({"background":[0,0,0,1]})", "/background"},
+        BadLook{R"({"background":"black"})", "/background"}));
+
+TEST(Looks, unknown_objects_are_told_which_there_are) {
+  const std::string found = complaint([] { look_of(R"({"objects":{"mars":{}}})", two_objects()); });
+  EXPECT_NE(found.find("earth, moon"), std::string::npos) << found;
+}
+
+TEST(Looks, empty_look_is_the_default) {
+  const Look look = look_of("{}", two_objects());
+  EXPECT_EQ(look.effects, (Effects{true, true}));
+  EXPECT_FALSE(look.develop.white_cd_m2);
+  EXPECT_EQ(look.background, Rgb{});
+  // Objects get flat colours by their numbers; where nothing is hit, the background shows.
+  const Dataset data = make_dataset(3, 1, two_objects().objects, [](int column, int) {
+    if (column == 2) return std::vector<TestHit>{};
+    TestHit hit;
+    hit.id = static_cast<std::uint32_t>(column) + 1;
+    return std::vector{hit};
+  });
+  const Image image = picture(data, R"({"background":[0,0,1]})");
+  expect_color(image.display[0], default_color(1), 1e-6f);
+  expect_color(image.display[1], default_color(2), 1e-6f);
+  EXPECT_EQ(image.display[2], (Rgb{0, 0, 1}));
+}
+
+TEST(Settings, override_entries) {
+  json look = json::parse(R"({"objects":{"earth":{"spectrum":{"type":"black_body","temperature_K":5000}}}})");
+  set_entry(look, "objects.earth.spectrum.temperature_K=6500");
+  set_entry(look, "/objects/earth/texture/type=color");
+  set_entry(look, "objects.earth.texture={\"rgb\":[1,0,0]}");  // merged, not replaced
+  set_entry(look, "exposure.white_cd_m2=auto");
+  set_entry(look, "effects/doppler=false");
+  EXPECT_EQ(look, json::parse(R"({"objects":{"earth":{"spectrum":{"type":"black_body","temperature_K":6500},
+    "texture":{"type":"color","rgb":[1,0,0]}}},"exposure":{"white_cd_m2":"auto"},"effects":{"doppler":false}})"));
+  set_entry(look, "objects.earth=null");  // null removes
+  EXPECT_EQ(look["objects"], json::object());
+}
+
+TEST(Settings, reach_into_lists) {
+  json look = json::parse(R"({"objects":{"earth":{"time_slices":[{"from":0},{"from":1}]}}})");
+  set_entry(look, "objects.earth.time_slices.1.from=7");
+  EXPECT_EQ(look, json::parse(R"({"objects":{"earth":{"time_slices":[{"from":0},{"from":7}]}}})"));
+  EXPECT_NE(complaint([&] { set_entry(look, "objects.earth.time_slices.2.from=7"); }).find("list of 2"),
+            std::string::npos);
+}
+
+TEST(Settings, mistakes_are_refused) {
+  json look = json::object();
+  for (const char* bad :
+       {"", "exposure", "=1", "a..b=1", "a.=1", "/=1", "a={\"b\":", "a=[1,", "a={\"b\":1,\"b\":2}"})
+    EXPECT_NE(complaint([&] { set_entry(look, bad); }).find("--set"), std::string::npos) << bad;
+  EXPECT_EQ(look, json::object());
+}
+
+TEST(LookSources, follow_one_another) {
+  TestFolder folder;
+  Manifest manifest = two_objects();
+  manifest.scene = R"({"objects":[],"look":{"background":[1,0,0],"exposure":{"ev":3}}})";
+  EXPECT_EQ(read_look(manifest, "d.exr", "", {}).background, (Rgb{1, 0, 0}));
+  const std::string file = folder.write("look.json", R"({"background":[0,1,0]})");
+  const Look replaced = read_look(manifest, "d.exr", file, {"gamut=clip"});
+  EXPECT_EQ(replaced.background, (Rgb{0, 1, 0}));
+  EXPECT_EQ(replaced.develop.ev, 0);  // replaced, not merged
+  EXPECT_EQ(replaced.develop.gamut, DevelopLook::Gamut::clip);
+  manifest.scene = R"({"objects":[]})";
+  EXPECT_EQ(read_look(manifest, "d.exr", "", {}).background, Rgb{});
+}
+
+TEST(LookSources, complaints_name_the_place) {
+  TestFolder folder;
+  Manifest manifest = two_objects();
+  manifest.scene = R"({"look":{"tone":{"curve":"x"}}})";
+  EXPECT_NE(complaint([&] { read_look(manifest, "d.exr", "", {}); }).find("d.exr: /look/tone/curve"),
+            std::string::npos);
+  const std::string file = folder.write("look.json", "{\n  \"gamut\": }");
+  EXPECT_NE(complaint([&] { read_look(manifest, "d.exr", file, {}); }).find(file + ": line 2"),
+            std::string::npos);
+  EXPECT_NE(complaint([&] { read_look(manifest, "d.exr", folder.file("no.json"), {}); }), "");
+}
+
+TEST(LookSources, textures_are_found_beside_the_look) {
+  Manifest manifest = two_objects();
+  TestFolder folder;
+  const std::string file =
+      folder.write("look.json", R"({"objects":{"earth":{"texture":{"type":"image","file":"maps/a.jpg"}},
+                                  "moon":{"texture":{"type":"image","file":"/maps/b.jpg"}}}})");
+  const Look look = read_look(manifest, "elsewhere/d.exr", file, {});
+  EXPECT_EQ(std::get<ImageLook>(*look.objects.at("earth").appearance.texture).file,
+            folder.file("maps/a.jpg"));
+  EXPECT_EQ(std::get<ImageLook>(*look.objects.at("moon").appearance.texture).file, "/maps/b.jpg");
+}
+
+}  // namespace
+}  // namespace nullcone::postrender

@@ -1,0 +1,123 @@
+// The renderer: compositing, independence of threads, reuse, and records that do not fit.
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "tests/postrender_fixture.h"
+
+namespace nullcone::postrender {
+namespace {
+
+TestHit hit_of(std::uint32_t id, float opacity) {
+  TestHit hit;
+  hit.id = id;
+  hit.opacity = opacity;
+  return hit;
+}
+
+constexpr const char* kThreeColors = R"({"objects":{"red":{"texture":{"type":"color","rgb":[1,0,0]}},
+  "green":{"texture":{"type":"color","rgb":[0,1,0]}},"blue":{"texture":{"type":"color","rgb":[0,0,1]}}},
+  "background":[1,1,1]})";
+
+TEST(Renderer, composites_front_to_back) {
+  const std::vector<ObjectEntry> objects = {{"red"}, {"green"}, {"blue"}};
+  // 1/2 red, then 1/4 of the remaining half green, and 3/8 of the white background.
+  const Image seen = picture(one_pixel({hit_of(1, 0.5f), hit_of(2, 0.25f)}, objects), kThreeColors);
+  expect_color(seen.exposed[0], {0.5f + 0.375f, 0.125f + 0.375f, 0.375f}, 1e-6f);
+  // Nothing shines through an opaque surface.
+  const Image hidden =
+      picture(one_pixel({hit_of(1, 0.5f), hit_of(2, 1), hit_of(3, 1)}, objects), kThreeColors);
+  EXPECT_EQ(hidden.exposed[0], (Rgb{0.5f, 0.5f, 0}));
+}
+
+TEST(Renderer, adds_physical_and_display_light) {
+  const std::vector<ObjectEntry> objects = {{"star"}, {"sign"}};
+  const Image image = picture(one_pixel({hit_of(2, 0.5f), hit_of(1, 1)}, objects),
+                              R"({"objects":{"star":{"spectrum":{"type":"black_body","temperature_K":6500}},
+                                 "sign":{"texture":{"type":"color","rgb":[0,0,0]}}}})");
+  // "auto" makes the one lit pixel white: luminance 1.
+  EXPECT_NEAR(luminance(image.exposed[0]), 1, 1e-6f);
+  EXPECT_GT(image.white_cd_m2, 1e9);
+}
+
+/// Two half-transparent objects with every kind of texture and spectrum, varying everywhere.
+Dataset busy(int width, int height) {
+  return make_dataset(width, height, {{"near"}, {"far", 3.0}}, [](int column, int row) {
+    const auto x = static_cast<float>(column), y = static_cast<float>(row);
+    TestHit near = hit_of(1, 0.3f + 0.3f * std::sin(0.1f * x)), far = hit_of(2, 1);
+    near.u = 0.01f * x - std::floor(0.01f * x);
+    near.v = 0.5f + 0.4f * std::sin(0.05f * y);
+    near.shift = 0.6f + 0.01f * y;
+    near.tau = near.t = -0.1f * x;
+    far.u = 0.5f + 0.4f * std::sin(0.03f * (x + y));
+    far.v = 0.5f + 0.4f * std::cos(0.07f * x);
+    far.shift = 1.2f;
+    far.t = -5;
+    return std::vector{near, far};
+  });
+}
+
+constexpr const char* kBusyLook = R"({"objects":{
+  "near":{"spectrum":{"type":"black_body","temperature_K":4000},
+          "time_slices":[{"channel":"t","from":-5,"to":-2,"spectrum":{"type":"display"}}]},
+  "far":{"texture":{"type":"checkerboard","counts":[40,20],"gradient":{"along":"v","from":[1,1,0],"to":[0,0,1]}}}},
+  "tone":{"curve":"exponential","k":1.5}})";
+
+TEST(Renderer, pictures_do_not_depend_on_threads) {
+  const auto with_threads = [](std::size_t count) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+    return picture(busy(150, 90), kBusyLook);
+  };
+  const Image one = with_threads(1);
+  for (const std::size_t count : {2u, 5u}) {
+    const Image many = with_threads(count);
+    EXPECT_EQ(many.display, one.display);
+    EXPECT_EQ(many.exposed, one.exposed);
+    EXPECT_EQ(many.white_cd_m2, one.white_cd_m2);
+  }
+  EXPECT_NE(one.display.front(), one.display.back());
+}
+
+TEST(Renderer, what_it_keeps_never_shows) {
+  // A renderer that has shown other looks gives the same picture as a new one.
+  Renderer renderer(busy(40, 40));
+  const Manifest& manifest = renderer.dataset().manifest;
+  const std::vector<std::string> texts = {kBusyLook,
+                                          "{}",
+                                          R"({"exposure":{"ev":2}})",
+                                          R"({"background":[1,1,1]})",
+                                          R"({"effects":{"searchlight":false}})",
+                                          kBusyLook};
+  for (const std::string& text : texts)
+    EXPECT_EQ(renderer.render(look_of(text, manifest)).display, picture(busy(40, 40), text).display) << text;
+}
+
+TEST(Renderer, records_that_do_not_fit_are_refused) {
+  const auto refused = [](auto&& spoil) {
+    Dataset data = busy(4, 4);
+    spoil(data);
+    return complaint([&] { Renderer renderer(std::move(data)); });
+  };
+  EXPECT_EQ(refused([](Dataset&) {}), "");
+  EXPECT_NE(refused([](Dataset& d) { d.hits.shift.pop_back(); }).find("shift"), std::string::npos);
+  EXPECT_NE(refused([](Dataset& d) { d.hits.id[3] = 9; }).find("object 9"), std::string::npos);
+  EXPECT_NE(refused([](Dataset& d) { d.hits.id[3] = 0; }).find("object 0"), std::string::npos);
+  EXPECT_NE(refused([](Dataset& d) { d.hits.offset.pop_back(); }), "");
+  EXPECT_NE(refused([](Dataset& d) { d.hits.offset[2] = 1000; }), "");
+  EXPECT_NE(refused([](Dataset& d) { d.manifest.width = 0; }), "");
+}
+
+TEST(Renderer, broken_coordinates_do_no_harm) {
+  TestHit hit;
+  hit.u = NAN;
+  hit.v = INFINITY;
+  for (const char* texture : {R"({"type":"checkerboard","counts":[3,3],"colors":[[1,1,1],[0,0,0]]})",
+                              R"({"type":"color","rgb":[1,1,1]})"}) {
+    const Image image =
+        picture(one_pixel({hit}), std::string(R"({"objects":{"earth":{"texture":)") + texture + "}}}");
+    EXPECT_TRUE(image.display[0].r >= 0 && image.display[0].r <= 1);
+  }
+}
+
+}  // namespace
+}  // namespace nullcone::postrender
