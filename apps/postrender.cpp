@@ -1,5 +1,6 @@
 // nullcone-postrender: a dataset and a look in, a picture out.
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -59,7 +60,7 @@ int work(const Options& options) {
   const tbb::global_control threads(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(options.common.threads > 0 ? options.common.threads
-                                                          : oneapi::tbb::info::default_concurrency()));
+                                                          : tbb::info::default_concurrency()));
   pr::check_picture_name(options.picture, options.bits);
   Stopwatch watch;
   Seconds seconds;

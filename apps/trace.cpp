@@ -1,0 +1,94 @@
+// nullcone-trace: from a scene to a dataset.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "apps/preview.h"
+#include "apps/tool.h"
+#include "core/base/error.h"
+#include "core/trace/trace_scene.h"
+#include "metrics/registry.h"
+
+namespace {
+
+using namespace nullcone;
+
+/// The text of a scene: a JSON file, or the scene that a dataset carries in its header.
+std::string scene_text(const std::string& path) {
+  if (looks_like_exr(path)) return read_manifest(path).scene;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path, "cannot open the file; expected a scene (.json) or a dataset (.exr)");
+  std::string text;
+  constexpr std::size_t kLargest = std::size_t{64} << 20;
+  for (std::istreambuf_iterator<char> c(in), end; c != end; ++c) {
+    if (text.size() == kLargest) throw InputError(path, "is larger than 64 MiB; expected a scene");
+    text += *c;
+  }
+  if (in.bad() || text.empty()) throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
+  return text;
+}
+
+/// Rate and time left on standard error, about five times a second.
+class Talk {
+ public:
+  explicit Talk(bool quiet) : quiet_(quiet) {}
+
+  Progress progress() {
+    if (quiet_) return {};
+    return [this](std::size_t done, std::size_t all) {
+      const double now = seconds();
+      double last = last_.load();
+      if (now - last < 0.2 || !last_.compare_exchange_strong(last, now)) return;
+      const double rate = static_cast<double>(done) / now, left = static_cast<double>(all - done) / rate;
+      std::fprintf(stderr, "\r%3.0f %%, %.2f M rays/s, %.0f s left   ",
+                   100.0 * static_cast<double>(done) / static_cast<double>(all), 1e-6 * rate, left);
+    };
+  }
+  void summary(const Dataset& dataset, const std::string& path) const {
+    if (quiet_) return;
+    std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(), dataset.pixels(),
+                 dataset.hits.count(), seconds(), dataset.manifest.core_seconds, dataset.manifest.isa.c_str());
+  }
+
+ private:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+  bool quiet_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::atomic<double> last_ = 0;
+};
+
+/// Fails before the work, not after it, where nothing can be written.
+void check_writable(const std::string& path) {
+  const std::string probe = path + ".part-probe";
+  const bool fits = path.size() > 4 && path.ends_with(".exr");
+  if (!fits) throw InputError(path, "expected a name that ends in .exr");
+  if (!std::ofstream(probe)) throw WorkError(path, "cannot write there (no such folder, or no permission)");
+  std::remove(probe.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Traces light backwards through a scene and records what every ray meets.", "nullcone-trace");
+  std::string scene_path, output, isa;
+  ToolOptions options;
+  app.add_option("SCENE", scene_path, "Scene (.json), or a dataset (.exr) to trace again from its header")->required();
+  app.add_option("-o,--output", output, "Dataset to write (.exr)")->required();
+  app.add_option("--isa", isa, "Instruction set of the kernel");
+  add_common_options(app, options);
+
+  return run_tool(app, argc, argv, [&] {
+    check_writable(output);
+    const auto metrics = metric_descriptions();
+    const Scene scene = read_scene(scene_text(scene_path), scene_path, metrics);
+    const Spacetime& spacetime = find_spacetime(scene.metric, isa);
+    Talk talk(options.quiet);
+    const Dataset dataset = trace_scene(spacetime, scene, scene_path, options.threads, talk.progress());
+    write_dataset(output, dataset, make_preview(dataset));
+    talk.summary(dataset, output);
+    return 0;
+  });
+}
