@@ -7,9 +7,6 @@
 
 NULLCONE_KERNEL_BEGIN
 
-/// An upper bound that stands for "as far as you like".
-inline constexpr double kFar = 1e300;
-
 /// asinh |q|: half the distance from the axis in units of a.
 template <class S>
 S asinh_of(const Complex<S>& q) {

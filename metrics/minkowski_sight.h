@@ -11,13 +11,13 @@ template <class S>
 void bound_at_rest(const Minkowski::Path<S>& path, const PathPoint<S>&, double, bool, Sight<S>& sight) {
   sight.slope_min = sight.slope_max = abs(path.k[0]);
   sight.bend_max = S(0.0);
-  sight.valid = S(1e300);
+  sight.valid = S(kFar);
   sight.clearance = S(0.0);
 }
 
 /// A uniformly moving object: in its frame the ray is straight, and moves at the frequency k.u.
 struct MinkowskiOrbit {
-  static constexpr double farthest = 1e300, stretch = 1, bend = 0;
+  static constexpr double farthest = kFar, stretch = 1, bend = 0;
   Vec4<double> start, u;
 
   bool fits() const { return true; }

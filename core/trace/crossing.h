@@ -1,6 +1,8 @@
 // Where a ray first meets a surface: safe steps along the path itself, then Newton's method to machine precision.
 #pragma once
 
+#include <limits>
+
 #include "core/trace/metric.h"
 #include "core/trace/placing.h"
 #include "core/trace/shapes.h"
@@ -34,9 +36,9 @@ Crossing<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, c
     out.steps = select(active, out.steps + S(1.0), out.steps);
     out.met = out.met | (active & (step <= resolution + S(2e-15) * out.lambda));
     active = active & !out.met;
-    out.given_up = out.given_up | (active & !(step <= S(1e308)));  // NaN, or beyond every number
+    out.given_up = out.given_up | (active & !(step <= S(std::numeric_limits<double>::infinity())));  // NaN
     out.lambda = select(active, out.lambda + step, out.lambda);
-    active = active & !out.given_up & (out.lambda < limit);
+    active = active & (step < S(kFar)) & (out.lambda < limit);
     if (!any(active)) return out;
   }
   out.given_up = out.given_up | active;

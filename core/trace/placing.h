@@ -73,7 +73,9 @@ struct MovingPlacing {
       out.slope_max = around.frequency * S(orbit.stretch);
       out.bend_max = around.frequency * around.frequency * S(orbit.bend);
       locate(lambda, tau, out);
-      out.valid = max(S(orbit.farthest) - norm(out.X), S(0.02 * orbit.farthest)) / out.slope_max;
+      out.valid = S(kFar);
+      if (orbit.farthest < kFar)  // the bounds hold so far around the object
+        out.valid = max(S(orbit.farthest) - norm(out.X), S(0.02 * orbit.farthest)) / out.slope_max;
       return out;
     }
 
