@@ -10,16 +10,19 @@ NULLCONE_KERNEL_BEGIN
 
 /// The orbit of a freely falling object as its own axis sees it: in the chart about the centre C of its base circle
 /// it moves as phi = phi_c + Omega (t - t_c), z = z_c + v (t - t_c) at constant rho, and its body is a fixed region of
-/// the co-moving cylindrical coordinates (rho, phi - Omega t, z - v t). A box around that region tells how long a ray
-/// stays clear.
+/// the co-moving cylindrical coordinates (rho, phi - Omega t, z - v t). A box and a ball (of H^2 x R) around that region
+/// tell how long a ray stays clear.
 struct GoedelOrbit {
   Goedel metric;
   Vec4<double> centre;       ///< C: an event on the axis of the base circle
   double t_c = 0, phi_c = 0, z_c = 0, omega = 0, v = 0, dt_dtau = 1;
-  std::array<double, 3> low{}, high{}, low_outer{}, high_outer{};  ///< rho, phi, z; the outer box has some room
+  Complex<double> q_c{};     ///< the object's place in the co-moving plane, on the real axis
+  std::array<double, 3> low{}, high{};  ///< the box: rho, phi, z
   bool all_phi = false;      ///< the body reaches round the axis
+  double reach = 0;          ///< radius of the ball about the object's place
+  double close = 0;          ///< distance at which the search goes over to the rest frame
   double ball = 0;           ///< bounding radius in the rest frame
-  double farthest = 0;       ///< |X| within the outer box is less than this
+  double farthest = 0;       ///< |X| is less than this at distances below `close`
   double stretch = 1;        ///< |dX/dlambda| lies within [1/stretch, stretch] times the frequency k.K
   double bend = 0;           ///< |d2X/dlambda2| over the frequency squared
 
@@ -41,6 +44,8 @@ struct GoedelOrbit {
     Goedel::Path<S> path;  ///< in the chart about C
     S frequency;           ///< |k.K|, K the Killing vector that is the object's 4-velocity on its worldline
 
+    /// Distance in H^2 x R from the object's place in co-moving coordinates.
+    S distance(const Complex<S>& q, const S& z) const;
     /// Affine length for which the body is surely not met, 0 close to it; and the object's proper time then.
     S clearance(const S& lambda, S& tau) const;
   };
@@ -51,8 +56,11 @@ struct GoedelOrbit {
  private:
   void find_box(const LocalFrame<Goedel>& frame);
   void find_farthest(const LocalFrame<Goedel>& frame);
-  Vec3<double> comoving(const Vec4<double>& x) const;        // of an event of the world's chart
-  Vec4<double> event(const Vec3<double>& comoving) const;    // at t = t_c, in the world's chart
+  struct Comoving {
+    double rho, phi, z;
+    Complex<double> q;
+  };
+  Comoving comoving(const Vec4<double>& world) const;
 };
 
 /// k in the static tetrad at x, carried along by the isometry that takes P to the origin.
@@ -86,27 +94,38 @@ S GoedelOrbit::Ray<S>::clearance(const S& lambda, S& tau) const {
   const Complex<S> turned = q * Complex<S>{angle.cos, -angle.sin};
   const S rho = asinh_of(q), phi = atan2(turned.im, turned.re);
   const S z = P.event[3] - S(o.z_c) - S(o.v) * elapsed;
-  const auto gap = [](const S& x, double low, double high) { return max(max(S(low) - x, x - S(high)), S(0.0)); };
+  const auto outside = [](const S& x, double low, double high) { return max(max(S(low) - x, x - S(high)), S(0.0)); };
   const auto around = [&](const S& x, double low, double high) {  // the shorter way round the circle
     const S one_way = max(S(low) - x, x - S(high));
     return max(min(one_way, S(2 * std::numbers::pi - (high - low)) - one_way), S(0.0));
   };
-  const S gap_rho = gap(rho, o.low[0], o.high[0]), gap_z = gap(z, o.low[2], o.high[2]);
+  const S gap_rho = outside(rho, o.low[0], o.high[0]), gap_z = outside(z, o.low[2], o.high[2]);
   const S gap_phi = o.all_phi ? S(0.0) : around(phi, o.low[1], o.high[1]);
 
-  // rho moves at most with s/2a; z with its own speed minus the object's; phi is bounded within a window of rho.
+  // rho moves at most with s/2a; z with its own speed minus the object's; phi and the distance are bounded within a
+  // window of rho: |dt/dlambda| <= k + sqrt2 s.
   const S window = min(S(0.125), S(0.5) * rho), nearest = rho - window, steepest = min(rho + window, S(1.0));
   const S phi_speed = s * (S(0.5 / a) / nearest + S(Goedel::kSqrt2 * o.omega) * steepest) + S(o.omega) * k;
   const S dz = -P.tangent[3], approach = select(z < S(0.5 * (o.low[2] + o.high[2])), -dz, dz);
-  const S z_speed = approach + S(std::fabs(o.v)) * (k + S(Goedel::kSqrt2) * s);
+  const S time_speed = k + S(Goedel::kSqrt2) * s, z_speed = approach + S(std::fabs(o.v)) * time_speed;
+  const S u = sqrt(norm2(q)), p = sqrt(S(1.0) + u * u);  // sinh(rho + 1/8) and cosh bound what the window holds
+  const S round = S(2 * a) * (S(1.00783) * u + S(0.12533) * p) * (S(1.00783) * p + S(0.12533) * u);
+  const S speed = k + time_speed * (S(o.omega) * round + S(std::fabs(o.v)));
+  const S within = S(2 * a) * window / s, gap = distance(turned, z) - S(o.reach);
   const S by_rho = S(2 * a) * gap_rho / s;
   const S by_z = select(z_speed > S(0.0), gap_z / z_speed, select(gap_z > S(0.0), S(kFar), S(0.0)));
-  const S by_phi = min(gap_phi / phi_speed, S(2 * a) * window / s);
+  const S by_phi = min(gap_phi / phi_speed, within), by_distance = min(gap / speed, S(0.25 * a) / s);
+  return select(gap <= S(o.close - o.reach), S(0.0), max(max(by_rho, by_z), max(by_phi, by_distance)));
+}
 
-  auto close = (gap(rho, o.low_outer[0], o.high_outer[0]) <= S(0.0)) &
-               (gap(z, o.low_outer[2], o.high_outer[2]) <= S(0.0));
-  if (!o.all_phi) close = close & (around(phi, o.low_outer[1], o.high_outer[1]) <= S(0.0));
-  return select(close, S(0.0), max(max(by_rho, by_z), by_phi));
+/// By (3.2), so that nothing cancels for a -> infinity.
+template <class S>
+S GoedelOrbit::Ray<S>::distance(const Complex<S>& q, const S& z) const {
+  const Complex<S> q0 = {S(orbit->q_c.re), S(orbit->q_c.im)}, dq = q - q0, middle = q + q0;
+  const S p0 = cosh_of(q0), p = cosh_of(q);
+  const Complex<S> qh = p0 * dq - ((dq.re * middle.re + dq.im * middle.im) / (p + p0)) * q0;
+  const S plane = S(2 * orbit->metric.a) * asinh_of(qh);
+  return sqrt(plane * plane + z * z);
 }
 
 inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding_radius)
@@ -119,6 +138,7 @@ inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding
   t_c = P[0];
   z_c = P[3];
   phi_c = atan2(P[2], P[1]);
+  q_c = {std::sqrt(norm2(metric.to_q(P))), 0};
   omega = Goedel::kSqrt2 * kappa / (a * (2 * kappa - 1));
   dt_dtau = frame.u[0] * (2 * kappa - 1);
   v = frame.u[3] / dt_dtau;
@@ -132,58 +152,55 @@ inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding
   bend = (1.3 * tilt * a * std::exp(1.8 * lean) + 1.2 * size * std::exp(1.2 * size)) / a;
 }
 
-inline Vec3<double> GoedelOrbit::comoving(const Vec4<double>& world) const {
+inline GoedelOrbit::Comoving GoedelOrbit::comoving(const Vec4<double>& world) const {
   const Vec4<double> x = metric.to_origin(centre, world);
   const double elapsed = x[0] - t_c;
   const auto [s, c] = sincos(omega * elapsed + phi_c);
   const Complex<double> q = metric.to_q(x) * Complex<double>{c, -s};
-  return {{asinh_of(q), atan2(q.im, q.re), x[3] - z_c - v * elapsed}};
+  return {asinh_of(q), atan2(q.im, q.re), x[3] - z_c - v * elapsed, q};
 }
 
-inline Vec4<double> GoedelOrbit::event(const Vec3<double>& y) const {
-  const double r = 2 * metric.a * std::sinh(y[0]);
-  const auto [s, c] = sincos(y[1] + phi_c);
-  return metric.from_origin(centre, Vec4<double>{{t_c, r * c, r * s, y[2] + z_c}});
-}
-
-/// The box from 2,000 points of the bounding sphere; 3 % of room cover what lies between them, and rounding in the
-/// chart about C is allowed for.
+/// Box and ball from 2,000 points of the bounding sphere; 3 % of room cover what lies between them, and rounding in
+/// the chart about C is allowed for.
 inline void GoedelOrbit::find_box(const LocalFrame<Goedel>& frame) {
-  const double a = metric.a, rho_c = comoving(frame.start)[0];
+  const double a = metric.a, rho_c = asinh_of(q_c);
+  const Ray<double> measure{this, {}, 0};
   for (std::size_t i = 0; i < 3; ++i) low[i] = kFar, high[i] = -kFar;
   constexpr int kPoints = 2000;
   for (int n = 0; n < kPoints; ++n) {
-    const double z = (2 * n + 1.0) / kPoints - 1, flat = std::sqrt(1 - z * z);
-    const auto [s, c] = sincos(2.399963229728653 * n);  // golden angle
-    const Vec3<double> y = comoving(frame.event(0.0, Vec3<double>{{ball * flat * c, ball * flat * s, ball * z}}));
-    for (std::size_t i = 0; i < 3; ++i) low[i] = std::fmin(low[i], y[i]), high[i] = std::fmax(high[i], y[i]);
+    const Comoving y = comoving(frame.event(0.0, ball * golden_point(n, kPoints)));
+    const std::array<double, 3> place = {y.rho, y.phi, y.z};
+    for (std::size_t i = 0; i < 3; ++i) low[i] = std::fmin(low[i], place[i]), high[i] = std::fmax(high[i], place[i]);
+    reach = std::fmax(reach, measure.distance(y.q, y.z));
   }
-  all_phi = high[1] - low[1] > 3 || 2 * a * rho_c < 2 * ball;
+  all_phi = high[1] - low[1] > 3 || 2 * a * rho_c < 1.3 * ball;
   if (all_phi) low[0] = -1, low[1] = -4, high[1] = 4;
   const Complex<double> q = metric.to_q(centre);
   const double rounding = 1e-14 * a * norm2(Complex<double>{cosh_of(q), std::sqrt(norm2(q))});
-  const std::array<double, 3> least = {rounding / a, rounding / (a * std::fmax(rho_c, 1e-3)), rounding};
+  const std::array<double, 3> room = {rounding / a, rounding / (a * std::fmax(rho_c, 1e-3)), rounding};
   for (std::size_t i = 0; i < 3; ++i) {
     const double half = 0.5 * (high[i] - low[i]);
-    low[i] -= 0.03 * half + least[i], high[i] += 0.03 * half + least[i];
-    low_outer[i] = low[i] - 0.25 * half - least[i], high_outer[i] = high[i] + 0.25 * half + least[i];
+    low[i] -= 0.03 * half + room[i], high[i] += 0.03 * half + room[i];
   }
+  reach = 1.03 * reach + rounding;
+  close = 1.3 * reach;
 }
 
-/// The greatest rest-frame distance |X| of a grid of points over the outer box.
+/// The greatest rest-frame distance |X| at co-moving distance `close`.
 inline void GoedelOrbit::find_farthest(const LocalFrame<Goedel>& frame) {
-  const int around = all_phi ? 16 : 2;
-  const double low_phi = all_phi ? -std::numbers::pi : low_outer[1], high_phi = all_phi ? std::numbers::pi : high_outer[1];
-  for (int i = 0; i <= 2; ++i)
-    for (int j = 0; j <= around; ++j)
-      for (int k = 0; k <= 2; ++k) {
-        const auto at = [](double from, double to, int step, int steps) { return from + (to - from) * step / steps; };
-        const Vec4<double> x = event({{at(std::fmax(low_outer[0], 0), high_outer[0], i, 2), at(low_phi, high_phi, j, around),
-                                       at(low_outer[2], high_outer[2], k, 2)}});
-        const double tau = nullcone::NULLCONE_ISA::proper_time(frame, x, 0.0);
-        const double distance = norm(spatial(frame.rest(x, tau)));
-        farthest = distance <= kFar ? std::fmax(farthest, 1.1 * distance) : kFar;
-      }
+  constexpr int kPoints = 200;
+  const Vec4<double> place = {{t_c, 2 * metric.a * q_c.re, 0, 0}};
+  for (int n = 0; n < kPoints; ++n) {
+    const Vec3<double> direction = golden_point(n, kPoints);
+    const double flat = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
+    const double r = 2 * metric.a * std::sinh(0.5 * close * flat / metric.a) / flat;
+    const Vec4<double> near = metric.from_origin(place, Vec4<double>{{0, r * direction[0], r * direction[1], 0}});
+    const auto [s, c] = sincos(phi_c);
+    const Vec4<double> x = metric.from_origin(
+        centre, Vec4<double>{{t_c, c * near[1] - s * near[2], s * near[1] + c * near[2], z_c + close * direction[2]}});
+    const double distance = norm(spatial(frame.rest(x, nullcone::NULLCONE_ISA::proper_time(frame, x, 0.0))));
+    farthest = distance <= kFar ? std::fmax(farthest, 1.1 * distance) : kFar;
+  }
 }
 
 inline GoedelOrbit make_orbit(const LocalFrame<Goedel>& frame, double ball) { return {frame, ball}; }

@@ -43,9 +43,7 @@ template <class Body>
 bool moves_timelike(const M& metric, const Body& body, double ball) {
   using D = Dual<double, 1>;
   for (int n = 0; n < 64; ++n) {
-    const double z = (2 * n + 1.0) / 64 - 1, flat = std::sqrt(1 - z * z);
-    const auto [s, c] = sincos(2.399963229728653 * n);
-    const Vec4<D> x = body.event(D::variable(0.0, 0), Vec3<D>{{D(ball * flat * c), D(ball * flat * s), D(ball * z)}});
+    const Vec4<D> x = body.event(D::variable(0.0, 0), convert<D>(ball * golden_point(n, 64)));
     const auto event = Vec4<double>::map([&](std::size_t i) { return x[i].v; });
     const auto u = Vec4<double>::map([&](std::size_t i) { return x[i].d[0]; });
     if (!(inner(metric.g(event), u, u) > 0)) return false;

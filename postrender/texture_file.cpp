@@ -73,7 +73,8 @@ std::vector<Rgb> read_as(ImageInput& in, TypeDesc type, const Place& place, Line
   const std::size_t channels = spec.nchannels >= 3 ? 3 : 1;
   const auto texels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   std::vector<T> raw(texels * channels);
-  if (!in.read_image(0, 0, 0, static_cast<int>(channels), type, raw.data()))
+  // OpenImageIO reports success for a TIFF file with strips missing, but keeps the error.
+  if (!in.read_image(0, 0, 0, static_cast<int>(channels), type, raw.data()) || in.has_error())
     place.refuse("cannot be read whole: " + in.geterror());
   std::vector<Rgb> out(texels);
   for (std::size_t i = 0; i < texels; ++i) {
@@ -109,16 +110,19 @@ std::vector<Rgb> read_linear(ImageInput& in, const Place& place) {
   }
 }
 
-/// libjpeg fills what is missing with grey and only warns, so look for the marker that ends every JPEG stream.
+/// libjpeg fills what is missing with grey and only warns, so look for the marker that ends every JPEG
+/// stream.
 void check_jpeg_end(const Place& place) {
   std::ifstream in(place.path, std::ios::binary | std::ios::ate);
   const std::streamoff size = in.tellg(), tail = std::min<std::streamoff>(size, 1 << 16);
   std::string bytes(static_cast<std::size_t>(tail), '\0');
   in.seekg(size - tail).read(bytes.data(), tail);
-  if (bytes.find("\xff\xd9") == std::string::npos) place.refuse("cannot be read whole: the JPEG file is cut off");
+  if (bytes.find("\xff\xd9") == std::string::npos)
+    place.refuse("cannot be read whole: the JPEG file is cut off");
 }
 
-/// libpng prints to standard error by itself when a file is cut off, so walk its chunks to the last one first.
+/// libpng prints to standard error by itself when a file is cut off, so walk its chunks to the last one
+/// first.
 void check_png_end(const Place& place) {
   std::ifstream in(place.path, std::ios::binary);
   in.seekg(8);

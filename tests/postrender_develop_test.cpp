@@ -1,4 +1,5 @@
 // Exposure, tone curve, gamut mapping, and pictures in files.
+#include <algorithm>
 #include <cmath>
 
 #include <OpenImageIO/imageio.h>
@@ -33,6 +34,11 @@ TEST(Gamut, hue_preserving_keeps_hue_and_luminance) {
         for (const float x : {out.r, out.g, out.b})
           EXPECT_TRUE(x >= 0 && x <= 1) << r << " " << g << " " << b;
         EXPECT_NEAR(luminance(out), Y, 1e-6f);  // float rounding of a sum of three terms below 4
+        // As little grey as is needed: a colour that moved stops at the border.
+        const bool moved =
+            out != in && std::max({std::abs(out.r - r), std::abs(out.g - g), std::abs(out.b - b)}) > 1e-5f;
+        const float border = std::min(std::min({out.r, out.g, out.b}), 1 - std::max({out.r, out.g, out.b}));
+        EXPECT_NEAR(moved ? border : 0, 0, 1e-6f) << r << " " << g << " " << b;
         const Rgb away{out.r - Y, out.g - Y, out.b - Y};
         if (std::hypot(away.r, away.g, away.b) < 1e-2f) continue;
         // Rounding of 1e-7 over a saturation of at least 1e-2.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "postrender/color.h"
 #include "tests/postrender_fixture.h"
 
 namespace nullcone::postrender {

@@ -31,10 +31,11 @@ Crossing<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, c
   out.met = out.given_up = active & !active;
   for (int i = 0; i < kSearchLimit; ++i) {
     const Sight<S> sight = ray.at(out.lambda);
+    const S rounding = resolution + S(4e-15) * out.lambda;
     const auto far = sight.clearance > S(0.0);
-    const S step = select(far, sight.clearance, min(shape.safe_step(sight), sight.valid));
+    const S step = select(far, sight.clearance, min(shape.safe_step(sight, rounding), sight.valid));
     out.steps = select(active, out.steps + S(1.0), out.steps);
-    out.met = out.met | (active & (step <= resolution + S(2e-15) * out.lambda));
+    out.met = out.met | (active & (step <= rounding));
     active = active & !out.met;
     out.given_up = out.given_up | (active & !(step <= S(std::numeric_limits<double>::infinity())));  // NaN
     out.lambda = select(active, out.lambda + step, out.lambda);

@@ -71,6 +71,13 @@ struct LocalFrame {
   void prepare();
 };
 
+/// Point n of `count`, spread evenly over the unit sphere (golden spiral).
+inline Vec3<double> golden_point(int n, int count) {
+  const double z = (2 * n + 1.0) / count - 1, flat = std::sqrt(1 - z * z);
+  const auto [s, c] = sincos(2.399963229728653 * n);
+  return {{flat * c, flat * s, z}};
+}
+
 /// The proper time at which `event` is simultaneous with P in the rest frame: Newton's method from a first guess.
 /// NaN where there is none nearby.
 template <Metric M>
@@ -80,7 +87,7 @@ double proper_time(const LocalFrame<M>& frame, const Vec4<double>& event, double
     const D late = frame.rest(convert<D>(event), D::variable(tau, 0))[0];
     const double step = late.v / late.d[0];
     tau -= step;
-    if (!(std::fabs(step) > 1e-15 * std::fabs(tau))) break;
+    if (!(std::fabs(step) > 1e-15 * (1 + std::fabs(tau)))) break;
   }
   return tau;
 }

@@ -22,18 +22,25 @@ struct Sphere {
     return from_inside ? -f : f;
   }
 
-  /// A step that cannot pass the surface. F = |X|^2 - R^2 has F'' = 2|X'|^2 + 2 X.X''.
+  /// A step that cannot pass the surface: F = |X|^2 - R^2 has F'' = 2|X'|^2 + 2 X.X'', bounded below by 2 c.
   template <class S>
-  S safe_step(const Sight<S>& ray) const {
-    const S slope = S(2.0) * dot(ray.X, ray.slope), distance = norm(ray.X);
+  S safe_step(const Sight<S>& ray, const S&) const {
+    const S along = dot(ray.X, ray.slope), distance = norm(ray.X), speed2 = dot(ray.slope, ray.slope);
     const S farthest = distance + ray.slope_max * ray.valid;
     if (from_inside) {
       const S c = S(-2.0) * (ray.slope_max * ray.slope_max + farthest * ray.bend_max);
-      return first_root(value(ray.X), -slope, c, ray.valid);
+      return first_root(value(ray.X), S(-2.0) * along, c, ray.valid);
     }
-    const S c = S(2.0) * (ray.slope_min * ray.slope_min - farthest * ray.bend_max);
-    const S by_curve = first_root(value(ray.X), slope, c, ray.valid);
-    return max(by_curve, (distance - S(radius)) / ray.slope_max);
+    // From afar the impact parameter |X x X'|/|X'| is known to rounding of |X|: aim at a sphere larger by that.
+    const S R = S(radius) + S(4e-15) * distance, F = (distance - R) * (distance + R);
+    const S c = ray.slope_min * ray.slope_min - farthest * ray.bend_max;
+    // (X.X')^2 - c F without cancellation; the last term is zero along straight lines.
+    const Vec3<S> moment = cross(ray.X, ray.slope);
+    const S bending = max(speed2 * S(1 - 1e-14) - c, S(0.0)) * F;
+    const S discriminant = speed2 * R * R - dot(moment, moment) + bending;
+    const S denominator = sqrt(max(discriminant, S(0.0))) - along;
+    const auto meets = (discriminant >= S(0.0)) & (denominator > S(0.0));
+    return max(select(meets, F / denominator, ray.valid), (distance - R) / ray.slope_max);
   }
 
   /// u: longitude, 0.5 at +x, growing towards +y; v: 0 at -z, 1 at +z (equirectangular).
@@ -55,14 +62,16 @@ struct Quad {
     return X[2];
   }
 
-  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest speed.
+  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest speed. Within
+  /// `resolution` (a length of lambda) the rectangle counts as met: rounding may have carried the ray across.
   template <class S>
-  S safe_step(const Sight<S>& ray) const {
+  S safe_step(const Sight<S>& ray, const S& resolution) const {
     const S out_x = max(abs(ray.X[0]) - S(half_x), S(0.0)), out_y = max(abs(ray.X[1]) - S(half_y), S(0.0));
     const S distance = sqrt(out_x * out_x + out_y * out_y + ray.X[2] * ray.X[2]);
     const S slope = select(ray.X[2] < S(0.0), -ray.slope[2], ray.slope[2]);
     const S by_plane = first_root(abs(ray.X[2]), slope, -ray.bend_max, ray.valid);
-    return max(by_plane, distance / ray.slope_max);
+    const S by_distance = distance / ray.slope_max;
+    return select(by_distance <= resolution, S(0.0), max(by_plane, by_distance));
   }
 
   std::array<double, 2> uv(const Vec3<double>& X) const {
