@@ -13,7 +13,8 @@ using namespace nullcone;
 using json = nlohmann::ordered_json;
 
 /// Values of a metric's parameters, defaults overridden by "key=value".
-std::vector<double> parameter_values(const MetricDescription& metric, const std::vector<std::string>& settings) {
+std::vector<double> parameter_values(const MetricDescription& metric,
+                                     const std::vector<std::string>& settings) {
   std::vector<double> values;
   for (const MetricParameter& p : metric.parameters) values.push_back(p.fallback);
   for (const std::string& setting : settings) {
@@ -22,7 +23,8 @@ std::vector<double> parameter_values(const MetricDescription& metric, const std:
     std::size_t i = 0, used = 0;
     while (i < metric.parameters.size() && metric.parameters[i].name != key) ++i;
     if (equals == std::string::npos || i == metric.parameters.size())
-      throw InputError("--set " + setting, "expected key=value with a parameter of " + std::string(metric.name));
+      throw InputError("--set " + setting,
+                       "expected key=value with a parameter of " + std::string(metric.name));
     const std::string text = setting.substr(equals + 1);
     try {
       values[i] = std::stod(text, &used);
@@ -31,7 +33,8 @@ std::vector<double> parameter_values(const MetricDescription& metric, const std:
     }
     const MetricParameter& p = metric.parameters[i];
     if (used != text.size() || text.empty() || !(values[i] >= p.least && values[i] <= p.most)) {
-      throw InputError("--set " + setting, "expected a number from " + json(p.least).dump() + " to " + json(p.most).dump());
+      throw InputError("--set " + setting,
+                       "expected a number from " + json(p.least).dump() + " to " + json(p.most).dump());
     }
   }
   return values;
@@ -42,7 +45,8 @@ void check_finite(const std::string& option, const std::vector<double>& values) 
     if (!std::isfinite(value)) throw InputError(option, "expected finite numbers");
 }
 
-/// Components in the static tetrad: a photon of frequency 1, or gamma (1, speed n) over gamma, so that lambda = gamma tau.
+/// Components in the static tetrad: a photon of frequency 1, or gamma (1, speed n) over gamma, so that lambda
+/// = gamma tau.
 Event tangent_in_tetrad(std::vector<double> n, double speed) {
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   if (!(std::fabs(length - 1) < 1e-6))
@@ -53,7 +57,8 @@ Event tangent_in_tetrad(std::vector<double> n, double speed) {
 
 json point_entry(const GeodesicPoint& point) {
   bool finite = true;
-  for (std::size_t i = 0; i < 4; ++i) finite = finite && std::isfinite(point.event[i]) && std::isfinite(point.tangent[i]);
+  for (std::size_t i = 0; i < 4; ++i)
+    finite = finite && std::isfinite(point.event[i]) && std::isfinite(point.tangent[i]);
   return {{"lambda", point.lambda},
           {"event", point.event},
           {"tangent", point.tangent},
@@ -64,7 +69,8 @@ void print_table(const std::vector<GeodesicPoint>& points) {
   std::cout << "lambda\tt\tx\ty\tz\n";
   std::cout.precision(15);
   for (const GeodesicPoint& p : points)
-    std::cout << p.lambda << '\t' << p.event[0] << '\t' << p.event[1] << '\t' << p.event[2] << '\t' << p.event[3] << '\n';
+    std::cout << p.lambda << '\t' << p.event[0] << '\t' << p.event[1] << '\t' << p.event[2] << '\t'
+              << p.event[3] << '\n';
 }
 
 }  // namespace
@@ -80,9 +86,13 @@ int main(int argc, char** argv) {
   app.add_option("--metric", name, "Spacetime")->required();
   app.add_option("--set", settings, "Parameter of the spacetime, key=value")->allow_extra_args(false);
   app.add_option("--event", event, "Where it passes: t,x,y,z")->delimiter(',')->expected(4)->required();
-  app.add_option("--direction", direction, "Unit spatial direction n1,n2,n3 in the static tetrad, future-directed")
-      ->delimiter(',')->expected(3)->required();
-  const auto* has_speed = app.add_option("--speed", speed, "Local speed of a particle (below 1); without it, light");
+  app.add_option("--direction", direction,
+                 "Unit spatial direction n1,n2,n3 in the static tetrad, future-directed")
+      ->delimiter(',')
+      ->expected(3)
+      ->required();
+  const auto* has_speed =
+      app.add_option("--speed", speed, "Local speed of a particle (below 1); without it, light");
   app.add_option("--paths", paths, "How the path is found")->check(CLI::IsMember({"closed"}));
   app.add_option("--at", at, "Affine parameters l1,l2,... (negative: the past)")->delimiter(',')->required();
   app.add_flag("--json", as_json, "Report as JSON");
@@ -94,14 +104,16 @@ int main(int argc, char** argv) {
     check_finite("--event", event);
     check_finite("--direction", direction);
     check_finite("--at", at);
-    if (*has_speed && !(speed >= 0 && speed < 1)) throw InputError("--speed", "expected a number from 0 to below 1");
+    if (*has_speed && !(speed >= 0 && speed < 1))
+      throw InputError("--speed", "expected a number from 0 to below 1");
     const Event k = tangent_in_tetrad(direction, speed), start = {event[0], event[1], event[2], event[3]};
     const auto points = spacetime.geodesic(values, start, k, at);
     if (!as_json) return print_table(points), 0;
     json report = {{"metric", name}, {"points", json::array()}, {"conserved", json::object()}};
     for (const GeodesicPoint& point : points) report["points"].push_back(point_entry(point));
     const double here = 0;
-    for (const auto& [key, value] : spacetime.conserved(values, spacetime.geodesic(values, start, k, {&here, 1})[0]))
+    for (const auto& [key, value] :
+         spacetime.conserved(values, spacetime.geodesic(values, start, k, {&here, 1})[0]))
       report["conserved"][std::string(key)] = value;
     std::cout << report.dump(2) << '\n';
     return 0;

@@ -56,21 +56,22 @@ json summary(const Dataset& dataset) {
   for (std::size_t i = 0; i + 1 < dataset.hits.offset.size(); ++i)
     most = std::max(most, dataset.hits.offset[i + 1] - dataset.hits.offset[i]);
   const json scene = json::parse(m.scene, nullptr, false);
-  return {{"width", m.width},
-          {"height", m.height},
-          {"metric", m.metric},
-          {"metric_parameters", scene.is_object() && scene.contains("metric") ? scene["metric"] : json(nullptr)},
-          {"hits", {{"count", dataset.hits.count()}, {"max_per_pixel", most}, {"ranges", ranges(dataset.hits)}}},
-          {"status", status_counts(dataset.rays)},
-          {"objects", object_list(dataset)},
-          {"payload", {{"hits", m.hits_sha256}, {"rays", m.rays_sha256}}},
-          {"scene_sha256", m.scene_sha256},
-          {"isa", m.isa},
-          {"core_seconds", m.core_seconds},
-          {"version", m.version},
-          {"host", m.host},
-          {"format", m.format},
-          {"scene", scene}};
+  return {
+      {"width", m.width},
+      {"height", m.height},
+      {"metric", m.metric},
+      {"metric_parameters", scene.is_object() && scene.contains("metric") ? scene["metric"] : json(nullptr)},
+      {"hits", {{"count", dataset.hits.count()}, {"max_per_pixel", most}, {"ranges", ranges(dataset.hits)}}},
+      {"status", status_counts(dataset.rays)},
+      {"objects", object_list(dataset)},
+      {"payload", {{"hits", m.hits_sha256}, {"rays", m.rays_sha256}}},
+      {"scene_sha256", m.scene_sha256},
+      {"isa", m.isa},
+      {"core_seconds", m.core_seconds},
+      {"version", m.version},
+      {"host", m.host},
+      {"format", m.format},
+      {"scene", scene}};
 }
 
 json pixel_records(const Dataset& dataset, const std::vector<int>& pixel) {
@@ -122,7 +123,9 @@ int main(int argc, char** argv) {
   ToolOptions options;
   app.add_option("DATA", path, "Dataset (.exr)")->required();
   app.add_flag("--json", as_json, "Report as JSON");
-  app.add_option("--pixel", pixel, "All records of the pixel X,Y, counted from 0 at the top left")->delimiter(',')->expected(2);
+  app.add_option("--pixel", pixel, "All records of the pixel X,Y, counted from 0 at the top left")
+      ->delimiter(',')
+      ->expected(2);
   app.add_flag("--verify", check, "Check counts, channels and fingerprints; one line a fault, exit status 1");
   add_common_options(app, options);
 
@@ -135,8 +138,10 @@ int main(int argc, char** argv) {
       return faults.empty() ? 0 : 1;
     }
     const json report = pixel.empty() ? summary(dataset) : pixel_records(dataset, pixel);
-    if (as_json) std::cout << report.dump(2) << '\n';
-    else print_plainly(report);
+    if (as_json)
+      std::cout << report.dump(2) << '\n';
+    else
+      print_plainly(report);
     return 0;
   });
 }

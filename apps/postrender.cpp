@@ -12,6 +12,7 @@
 #include "postrender/look_source.h"
 #include "postrender/picture_file.h"
 #include "postrender/renderer.h"
+#include "postrender/stack.h"
 
 namespace {
 
@@ -19,8 +20,8 @@ using namespace nullcone;
 
 struct Options {
   ToolOptions common;
-  std::string data, look, picture;
-  std::vector<std::string> settings;
+  std::string data, picture;
+  std::vector<std::string> looks, settings;
   int bits = 8;
   bool json = false;
 };
@@ -66,10 +67,15 @@ int work(const Options& options) {
   Seconds seconds;
 
   Dataset dataset = read_dataset(options.data);
-  const pr::Look look = pr::read_look(dataset.manifest, options.data, options.look, options.settings);
+  std::vector<pr::Look> looks;
+  for (const std::string& file : options.looks.empty() ? std::vector<std::string>{""} : options.looks)
+    looks.push_back(pr::read_look(dataset.manifest, options.data, file, options.settings));
   seconds.read = watch.lap();
 
-  const pr::Image image = pr::Renderer(std::move(dataset)).render(look);
+  pr::Renderer renderer(std::move(dataset));
+  std::vector<pr::Image> pictures;
+  for (const pr::Look& look : looks) pictures.push_back(renderer.render(look));
+  const pr::Image image = pr::stack(pictures);
   seconds.render = watch.lap();
 
   pr::write_picture(options.picture, image, options.bits);
@@ -86,7 +92,10 @@ int main(int argc, char** argv) {
   Options options;
   add_common_options(app, options.common);
   app.add_option("DATA", options.data, "dataset (.exr)")->required();
-  app.add_option("--look", options.look, "look (.json) in place of the scene's own");
+  app.add_option("--look", options.looks,
+                 "look (.json) in place of the scene's own; several are stacked from top to bottom")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--set", options.settings, "path=value: overrides an entry of the look (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

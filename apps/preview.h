@@ -9,8 +9,12 @@ namespace nullcone {
 
 /// Each object in a colour of its own, shaded by the emission angle; black where nothing was hit.
 inline Preview make_preview(const Dataset& dataset) {
-  constexpr std::array<std::array<float, 3>, 6> kColors = {
-      {{0.25F, 0.45F, 0.9F}, {0.9F, 0.5F, 0.2F}, {0.3F, 0.75F, 0.35F}, {0.8F, 0.3F, 0.6F}, {0.85F, 0.8F, 0.3F}, {0.5F, 0.5F, 0.5F}}};
+  constexpr std::array<std::array<float, 3>, 6> kColors = {{{0.25F, 0.45F, 0.9F},
+                                                            {0.9F, 0.5F, 0.2F},
+                                                            {0.3F, 0.75F, 0.35F},
+                                                            {0.8F, 0.3F, 0.6F},
+                                                            {0.85F, 0.8F, 0.3F},
+                                                            {0.5F, 0.5F, 0.5F}}};
   Preview out(4 * dataset.pixels(), 0.0F);
   for (std::size_t i = 0; i < dataset.pixels(); ++i) {
     const std::uint64_t first = dataset.hits.offset[i];

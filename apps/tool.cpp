@@ -1,10 +1,10 @@
 #include "apps/tool.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
+#include <oneapi/tbb/version.h>
 #include <boost/version.hpp>
 #include <iostream>
 #include <new>
-#include <oneapi/tbb/version.h>
 
 #include "core/base/error.h"
 #include "core/base/version.h"
@@ -16,10 +16,12 @@ namespace {
 
 /// Version, commit, instruction set and libraries.
 std::string about(const CLI::App& app) {
-  const std::string boost = std::to_string(BOOST_VERSION / 100000) + "." + std::to_string(BOOST_VERSION / 100 % 1000);
+  const std::string boost =
+      std::to_string(BOOST_VERSION / 100000) + "." + std::to_string(BOOST_VERSION / 100 % 1000);
   return app.get_name() + " " + version() + "\ncommit " + commit() + "\ninstruction set " +
-         std::string(find_spacetime("minkowski").isa()) + "\nOpenEXR " OPENEXR_VERSION_STRING ", oneTBB " TBB_VERSION_STRING
-         ", Boost " + boost + ", CLI11 " CLI11_VERSION;
+         std::string(find_spacetime("minkowski").isa()) +
+         "\nOpenEXR " OPENEXR_VERSION_STRING ", oneTBB " TBB_VERSION_STRING ", Boost " + boost +
+         ", CLI11 " CLI11_VERSION;
 }
 
 int complain(const CLI::App& app, const std::string& message, int status) {
@@ -31,7 +33,8 @@ int complain(const CLI::App& app, const std::string& message, int status) {
 
 ToolOptions& add_common_options(CLI::App& app, ToolOptions& options) {
   app.add_flag("-q,--quiet", options.quiet, "No progress or notes on standard error");
-  app.add_option("--threads", options.threads, "Number of threads (default: all cores)")->check(CLI::Range(0, 4096));
+  app.add_option("--threads", options.threads, "Number of threads (default: all cores)")
+      ->check(CLI::Range(0, 4096));
   app.set_version_flag("--version", about(app));
   return options;
 }

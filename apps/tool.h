@@ -14,8 +14,8 @@ struct ToolOptions {
 /// Adds --quiet, --threads and --version.
 ToolOptions& add_common_options(CLI::App& app, ToolOptions& options);
 
-/// Parses the command line, then runs `work`. Exit 0: done; 1: the work failed; 2: the input or the command line is
-/// wrong. Complaints are one line on standard error.
+/// Parses the command line, then runs `work`. Exit 0: done; 1: the work failed; 2: the input or the command
+/// line is wrong. Complaints are one line on standard error.
 int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
 }  // namespace nullcone

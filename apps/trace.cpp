@@ -26,7 +26,8 @@ std::string scene_text(const std::string& path) {
     if (text.size() == kLargest) throw InputError(path, "is larger than 64 MiB; expected a scene");
     text += *c;
   }
-  if (in.bad() || text.empty()) throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
+  if (in.bad() || text.empty())
+    throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
   return text;
 }
 
@@ -48,12 +49,15 @@ class Talk {
   }
   void summary(const Dataset& dataset, const std::string& path) const {
     if (quiet_) return;
-    std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(), dataset.pixels(),
-                 dataset.hits.count(), seconds(), dataset.manifest.core_seconds, dataset.manifest.isa.c_str());
+    std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(),
+                 dataset.pixels(), dataset.hits.count(), seconds(), dataset.manifest.core_seconds,
+                 dataset.manifest.isa.c_str());
   }
 
  private:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
 
   bool quiet_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -75,7 +79,8 @@ int main(int argc, char** argv) {
   CLI::App app("Traces light backwards through a scene and records what every ray meets.", "nullcone-trace");
   std::string scene_path, output, isa;
   ToolOptions options;
-  app.add_option("SCENE", scene_path, "Scene (.json), or a dataset (.exr) to trace again from its header")->required();
+  app.add_option("SCENE", scene_path, "Scene (.json), or a dataset (.exr) to trace again from its header")
+      ->required();
   app.add_option("-o,--output", output, "Dataset to write (.exr)")->required();
   app.add_option("--isa", isa, "Instruction set of the kernel");
   add_common_options(app, options);

@@ -1,9 +1,9 @@
 // The Gödel universe in pseudo-Cartesian coordinates (PHYSICS notes in docs/physics.md; Kajari et al. 2004,
-// Grave & Buser 2008). Rotating dust, homogeneous; circles of light; an optical horizon at r = 2a for an observer on
-// the axis. All formulas are regular at r = 0, for n_z -> ±1 and for a -> infinity.
+// Grave & Buser 2008). Rotating dust, homogeneous; circles of light; an optical horizon at r = 2a for an
+// observer on the axis. All formulas are regular at r = 0, for n_z -> ±1 and for a -> infinity.
 //
-// Points of the plane are written q = (x + iy)/2a with p = sqrt(1 + |q|^2); in H^2, of curvature radius a, the
-// distance from the axis is 2a asinh |q|.
+// Points of the plane are written q = (x + iy)/2a with p = sqrt(1 + |q|^2); in H^2, of curvature radius a,
+// the distance from the axis is 2a asinh |q|.
 #pragma once
 
 #include "core/trace/metric.h"
@@ -51,8 +51,8 @@ struct Goedel {
   struct Path {
     const Goedel* metric;
     S t0, z0, p0;
-    Complex<S> q0, nu;                   // start; in-plane local direction over k0
-    S k0, n_z, kappa, one_minus_kappa;   // kappa = sqrt(1 - s^2/2)
+    Complex<S> q0, nu;                  // start; in-plane local direction over k0
+    S k0, n_z, kappa, one_minus_kappa;  // kappa = sqrt(1 - s^2/2)
 
     /// P and Q of SU(1,1) without their common phase: |P|^2 - |Q|^2 = 1, q = Q conj(P)/|P|.
     struct Turned {
@@ -71,7 +71,8 @@ struct Goedel {
   template <class S>
   Path<S> path(const Vec4<S>& start, const Vec4<S>& k) const;
 
-  /// The isometry that carries the event P to the origin, and its inverse. Static worldlines go to static ones.
+  /// The isometry that carries the event P to the origin, and its inverse. Static worldlines go to static
+  /// ones.
   template <class S>
   Vec4<S> to_origin(const Vec4<S>& P, const Vec4<S>& x) const;
   template <class S>
@@ -116,7 +117,8 @@ Goedel::Path<S> Goedel::path(const Vec4<S>& start, const Vec4<S>& k) const {
   const Complex<S> q0 = to_q(start), nu = scale * Complex<S>{k[1], k[2]};
   const S half_s2 = S(0.5) * norm2(nu);
   const S kappa = sqrt(S(1.0) - half_s2);
-  return {this, start[0], start[3], cosh_of(q0), q0, nu, k[0], scale * k[3], kappa, half_s2 / (S(1.0) + kappa)};
+  return {this, start[0], start[3],     cosh_of(q0), q0,
+          nu,   k[0],     scale * k[3], kappa,       half_s2 / (S(1.0) + kappa)};
 }
 
 template <class S>
@@ -133,8 +135,8 @@ PathPoint<S> Goedel::Path<S>::at(const S& lambda) const {
   const Turned m = turned(lambda);
   const S P2 = norm2(m.P);
   const Complex<S> q = (S(1.0) / sqrt(P2)) * (m.Q * conj(m.P));
-  // t - t0 = (2 kappa - 1) mu + 2 sqrt2 a arg(conj(P) e^{-i psi}): the argument stays within (-pi, pi), and no two
-  // large terms cancel.
+  // t - t0 = (2 kappa - 1) mu + 2 sqrt2 a arg(conj(P) e^{-i psi}): the argument stays within (-pi, pi), and
+  // no two large terms cancel.
   const S real = p0 * (m.c * m.c + m.s * m.s / kappa), imag = p0 * (m.s * m.c * one_minus_kappa / kappa);
   const Complex<S> lift = (m.s / (S(kSqrt2) * kappa)) * (q0 * conj(nu) * Complex<S>{m.c, -m.s});
   const S t = t0 + (S(1.0) - S(2.0) * one_minus_kappa) * m.mu +
@@ -183,7 +185,8 @@ inline unsigned Goedel::caustics(double lambda, double n_z) const {
   const double psi = std::sqrt(1 + n_z * n_z) * lambda / (2 * a);
   const double lobe = std::floor(psi / kPi);
   const auto [s, c] = sincos(psi - lobe * kPi);
-  const double bracket = (1 - n_z * n_z) * psi * c + 2 * n_z * n_z * s;  // positive at the start of every lobe
+  const double bracket =
+      (1 - n_z * n_z) * psi * c + 2 * n_z * n_z * s;  // positive at the start of every lobe
   return 2 * static_cast<unsigned>(lobe) + (bracket < 0 ? 1 : 0);
 }
 
@@ -194,11 +197,13 @@ auto Goedel::conserved(const Vec4<S>& x, const Vec4<S>& k) const {
   const Vec4<S> lower = g(x) * k;
   const S xy = scale * b * x[1] * x[2];
   const Vec4<S> K2 = {{o, -x[2], x[1], o}};
-  const Vec4<S> K4 = over_s1 * Vec4<S>{{S(1 / kSqrt2) * x[1], -xy, scale * (one + b * r2 + b * x[1] * x[1]), o}};
-  const Vec4<S> K5 = over_s1 * Vec4<S>{{S(1 / kSqrt2) * x[2], -(scale * (one + b * r2 + b * x[2] * x[2])), xy, o}};
+  const Vec4<S> K4 =
+      over_s1 * Vec4<S>{{S(1 / kSqrt2) * x[1], -xy, scale * (one + b * r2 + b * x[1] * x[1]), o}};
+  const Vec4<S> K5 =
+      over_s1 * Vec4<S>{{S(1 / kSqrt2) * x[2], -(scale * (one + b * r2 + b * x[2] * x[2])), xy, o}};
   using C = std::pair<std::string_view, S>;
-  return std::array<C, 5>{C{"E", lower[0]}, C{"L", dot(lower, K2)}, C{"p_z", lower[3]}, C{"K4", dot(lower, K4)},
-                          C{"K5", dot(lower, K5)}};
+  return std::array<C, 5>{C{"E", lower[0]}, C{"L", dot(lower, K2)}, C{"p_z", lower[3]},
+                          C{"K4", dot(lower, K4)}, C{"K5", dot(lower, K5)}};
 }
 
 NULLCONE_KERNEL_END

@@ -8,23 +8,23 @@
 
 NULLCONE_KERNEL_BEGIN
 
-/// The orbit of a freely falling object as its own axis sees it: in the chart about the centre C of its base circle
-/// it moves as phi = phi_c + Omega (t - t_c), z = z_c + v (t - t_c) at constant rho, and its body is a fixed region of
-/// the co-moving cylindrical coordinates (rho, phi - Omega t, z - v t). A box and a ball (of H^2 x R) around that region
-/// tell how long a ray stays clear.
+/// The orbit of a freely falling object as its own axis sees it: in the chart about the centre C of its base
+/// circle it moves as phi = phi_c + Omega (t - t_c), z = z_c + v (t - t_c) at constant rho, and its body is a
+/// fixed region of the co-moving cylindrical coordinates (rho, phi - Omega t, z - v t). A box and a ball (of
+/// H^2 x R) around that region tell how long a ray stays clear.
 struct GoedelOrbit {
   Goedel metric;
-  Vec4<double> centre;       ///< C: an event on the axis of the base circle
+  Vec4<double> centre;  ///< C: an event on the axis of the base circle
   double t_c = 0, phi_c = 0, z_c = 0, omega = 0, v = 0, dt_dtau = 1;
-  Complex<double> q_c{};     ///< the object's place in the co-moving plane, on the real axis
+  Complex<double> q_c{};                ///< the object's place in the co-moving plane, on the real axis
   std::array<double, 3> low{}, high{};  ///< the box: rho, phi, z
-  bool all_phi = false;      ///< the body reaches round the axis
-  double reach = 0;          ///< radius of the ball about the object's place
-  double close = 0;          ///< distance at which the search goes over to the rest frame
-  double ball = 0;           ///< bounding radius in the rest frame
-  double farthest = 0;       ///< |X| is less than this at distances below `close`
-  double stretch = 1;        ///< |dX/dlambda| lies within [1/stretch, stretch] times the frequency k.K
-  double bend = 0;           ///< |d2X/dlambda2| over the frequency squared
+  bool all_phi = false;                 ///< the body reaches round the axis
+  double reach = 0;                     ///< radius of the ball about the object's place
+  double close = 0;                     ///< distance at which the search goes over to the rest frame
+  double ball = 0;                      ///< bounding radius in the rest frame
+  double farthest = 0;                  ///< |X| is less than this at distances below `close`
+  double stretch = 1;  ///< |dX/dlambda| lies within [1/stretch, stretch] times the frequency k.K
+  double bend = 0;     ///< |d2X/dlambda2| over the frequency squared
 
   GoedelOrbit() = default;
   GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding_radius);
@@ -35,7 +35,9 @@ struct GoedelOrbit {
   /// About the largest bounding radius that would fit.
   double largest_ball() const { return ball / farthest * std::fmin(0.9 / tilt, 2 * metric.a); }
   /// At which the object is nearest to an event in its neighbourhood, roughly.
-  double proper_time(const Vec4<double>& event) const { return (metric.to_origin(centre, event)[0] - t_c) / dt_dtau; }
+  double proper_time(const Vec4<double>& event) const {
+    return (metric.to_origin(centre, event)[0] - t_c) / dt_dtau;
+  }
   double tilt = 0;  ///< sqrt2 gamma^2 beta / a
 
   template <class S>
@@ -94,7 +96,9 @@ S GoedelOrbit::Ray<S>::clearance(const S& lambda, S& tau) const {
   const Complex<S> turned = q * Complex<S>{angle.cos, -angle.sin};
   const S rho = asinh_of(q), phi = atan2(turned.im, turned.re);
   const S z = P.event[3] - S(o.z_c) - S(o.v) * elapsed;
-  const auto outside = [](const S& x, double low, double high) { return max(max(S(low) - x, x - S(high)), S(0.0)); };
+  const auto outside = [](const S& x, double low, double high) {
+    return max(max(S(low) - x, x - S(high)), S(0.0));
+  };
   const auto around = [&](const S& x, double low, double high) {  // the shorter way round the circle
     const S one_way = max(S(low) - x, x - S(high));
     return max(min(one_way, S(2 * std::numbers::pi - (high - low)) - one_way), S(0.0));
@@ -102,13 +106,14 @@ S GoedelOrbit::Ray<S>::clearance(const S& lambda, S& tau) const {
   const S gap_rho = outside(rho, o.low[0], o.high[0]), gap_z = outside(z, o.low[2], o.high[2]);
   const S gap_phi = o.all_phi ? S(0.0) : around(phi, o.low[1], o.high[1]);
 
-  // rho moves at most with s/2a; z with its own speed minus the object's; phi and the distance are bounded within a
-  // window of rho: |dt/dlambda| <= k + sqrt2 s.
+  // rho moves at most with s/2a; z with its own speed minus the object's; phi and the distance are bounded
+  // within a window of rho: |dt/dlambda| <= k + sqrt2 s.
   const S window = min(S(0.125), S(0.5) * rho), nearest = rho - window, steepest = min(rho + window, S(1.0));
   const S phi_speed = s * (S(0.5 / a) / nearest + S(Goedel::kSqrt2 * o.omega) * steepest) + S(o.omega) * k;
   const S dz = -P.tangent[3], approach = select(z < S(0.5 * (o.low[2] + o.high[2])), -dz, dz);
   const S time_speed = k + S(Goedel::kSqrt2) * s, z_speed = approach + S(std::fabs(o.v)) * time_speed;
-  const S u = sqrt(norm2(q)), p = sqrt(S(1.0) + u * u);  // sinh(rho + 1/8) and cosh bound what the window holds
+  const S u = sqrt(norm2(q)),
+          p = sqrt(S(1.0) + u * u);  // sinh(rho + 1/8) and cosh bound what the window holds
   const S round = S(2 * a) * (S(1.00783) * u + S(0.12533) * p) * (S(1.00783) * p + S(0.12533) * u);
   const S speed = k + time_speed * (S(o.omega) * round + S(std::fabs(o.v)));
   const S within = S(2 * a) * window / s, gap = distance(turned, z) - S(o.reach);
@@ -133,7 +138,8 @@ inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding
   // The base circle: hyperbolic radius artanh(s/sqrt2), centre to the left of the motion (PHYSICS 2.2).
   const auto path = frame.worldline<double>();
   const double a = metric.a, kappa = path.kappa, to_centre = a / std::sqrt(kappa * (1 + kappa));
-  centre = metric.from_origin(frame.start, Vec4<double>{{0, -to_centre * path.nu.im, to_centre * path.nu.re, 0}});
+  centre =
+      metric.from_origin(frame.start, Vec4<double>{{0, -to_centre * path.nu.im, to_centre * path.nu.re, 0}});
   const Vec4<double> P = metric.to_origin(centre, frame.start);
   t_c = P[0];
   z_c = P[3];
@@ -160,8 +166,8 @@ inline GoedelOrbit::Comoving GoedelOrbit::comoving(const Vec4<double>& world) co
   return {asinh_of(q), atan2(q.im, q.re), x[3] - z_c - v * elapsed, q};
 }
 
-/// Box and ball from 2,000 points of the bounding sphere; 3 % of room cover what lies between them, and rounding in
-/// the chart about C is allowed for.
+/// Box and ball from 2,000 points of the bounding sphere; 3 % of room cover what lies between them, and
+/// rounding in the chart about C is allowed for.
 inline void GoedelOrbit::find_box(const LocalFrame<Goedel>& frame) {
   const double a = metric.a, rho_c = asinh_of(q_c);
   const Ray<double> measure{this, {}, 0};
@@ -170,7 +176,8 @@ inline void GoedelOrbit::find_box(const LocalFrame<Goedel>& frame) {
   for (int n = 0; n < kPoints; ++n) {
     const Comoving y = comoving(frame.event(0.0, ball * golden_point(n, kPoints)));
     const std::array<double, 3> place = {y.rho, y.phi, y.z};
-    for (std::size_t i = 0; i < 3; ++i) low[i] = std::fmin(low[i], place[i]), high[i] = std::fmax(high[i], place[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      low[i] = std::fmin(low[i], place[i]), high[i] = std::fmax(high[i], place[i]);
     reach = std::fmax(reach, measure.distance(y.q, y.z));
   }
   all_phi = high[1] - low[1] > 3 || 2 * a * rho_c < 1.3 * ball;
@@ -194,10 +201,12 @@ inline void GoedelOrbit::find_farthest(const LocalFrame<Goedel>& frame) {
     const Vec3<double> direction = golden_point(n, kPoints);
     const double flat = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
     const double r = 2 * metric.a * std::sinh(0.5 * close * flat / metric.a) / flat;
-    const Vec4<double> near = metric.from_origin(place, Vec4<double>{{0, r * direction[0], r * direction[1], 0}});
+    const Vec4<double> near =
+        metric.from_origin(place, Vec4<double>{{0, r * direction[0], r * direction[1], 0}});
     const auto [s, c] = sincos(phi_c);
-    const Vec4<double> x = metric.from_origin(
-        centre, Vec4<double>{{t_c, c * near[1] - s * near[2], s * near[1] + c * near[2], z_c + close * direction[2]}});
+    const Vec4<double> x =
+        metric.from_origin(centre, Vec4<double>{{t_c, c * near[1] - s * near[2], s * near[1] + c * near[2],
+                                                 z_c + close * direction[2]}});
     const double distance = norm(spatial(frame.rest(x, nullcone::NULLCONE_ISA::proper_time(frame, x, 0.0))));
     farthest = distance <= kFar ? std::fmax(farthest, 1.1 * distance) : kFar;
   }

@@ -10,7 +10,8 @@ using M = NULLCONE_METRIC;
 M make_metric(std::span<const double> values) {
   M metric;
   std::size_t i = 0;
-  std::apply([&](const auto&... parameter) { ((metric.*parameter.member = values[i++]), ...); }, M::parameters);
+  std::apply([&](const auto&... parameter) { ((metric.*parameter.member = values[i++]), ...); },
+             M::parameters);
   return metric;
 }
 
@@ -26,11 +27,13 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape) 
   const Vec4<double> event{placing.worldline.event};
   const Matrix3<double> axes = axes_of(placing);
   if (placing.type == PlacingType::coordinate)
-    return Placed<RestPlacing<M>, ChartBody<M>, Shape>{{metric, event, false, axes, ball}, {metric, event, axes}, shape};
+    return Placed<RestPlacing<M>, ChartBody<M>, Shape>{
+        {metric, event, false, axes, ball}, {metric, event, axes}, shape};
 
   const bool at_rest = placing.worldline.is_static();
-  LocalFrame<M> frame{metric, event, four_velocity(Vec3<double>{placing.worldline.velocity}), placing.gyroscope_axes,
-                      {}, axes};
+  LocalFrame<M> frame{
+      metric, event, four_velocity(Vec3<double>{placing.worldline.velocity}), placing.gyroscope_axes,
+      {},     axes};
   if (frame.gyroscope) frame.prepare();
   const LocalBody<M> body{frame, make_orbit(frame, ball)};
   if (at_rest && (Shape::isotropic || !frame.gyroscope))
@@ -54,9 +57,14 @@ bool moves_timelike(const M& metric, const Body& body, double ball) {
 class SceneTracer final : public Tracer {
  public:
   SceneTracer(const M& metric, const Scene& scene)
-      : metric_(metric), camera_(scene.camera), observation_{scene.observer.event},
-        u_camera_(four_velocity(Vec3<double>{scene.observer.velocity})), lookback_(scene.max_lookback),
-        count_(scene.objects.size()), objects_(new AnyPlaced<M>[count_]), origins_(new double[count_]) {
+      : metric_(metric),
+        camera_(scene.camera),
+        observation_{scene.observer.event},
+        u_camera_(four_velocity(Vec3<double>{scene.observer.velocity})),
+        lookback_(scene.max_lookback),
+        count_(scene.objects.size()),
+        objects_(new AnyPlaced<M>[count_]),
+        origins_(new double[count_]) {
     resolution_ = 4e-15 * norm(spatial(observation_));
   }
 
@@ -73,10 +81,12 @@ class SceneTracer final : public Tracer {
       if (object.placing.type == PlacingType::local)
         origins_[i] /= metric_.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
       if (object.shape.type == ShapeType::quad)
-        objects_[i] = place(metric_, object.placing, Quad{0.5 * object.shape.edges[0], 0.5 * object.shape.edges[1]});
+        objects_[i] =
+            place(metric_, object.placing, Quad{0.5 * object.shape.edges[0], 0.5 * object.shape.edges[1]});
       else
         objects_[i] = place(metric_, object.placing, Sphere{object.shape.radius, object.shape.dome});
-      if (!std::visit([&](const auto& placed) { return check(placed, object.shape, unfit); }, objects_[i])) return false;
+      if (!std::visit([&](const auto& placed) { return check(placed, object.shape, unfit); }, objects_[i]))
+        return false;
     }
     return true;
   }
@@ -136,13 +146,16 @@ class SceneTracer final : public Tracer {
             objects_[number - 1]);
         hit.pixel = static_cast<std::uint32_t>(i);
         hit.id = number;
-        if (!finite(hit)) status = Status::not_finite;
-        else room.hits[hits++] = hit;
+        if (!finite(hit))
+          status = Status::not_finite;
+        else
+          room.hits[hits++] = hit;
       } else if (status == Status::sky && sky_ != 0) {
         room.hits[hits++] = sky_record(past, static_cast<std::uint32_t>(i));
       }
       if (rays.doubtful[i]) status = Status::step_limit;
-      room.rays[i] = {static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(rays.steps[i]), 0.0F, 0.0F};
+      room.rays[i] = {static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(rays.steps[i]), 0.0F,
+                      0.0F};
     }
     return hits;
   }
@@ -176,7 +189,9 @@ class Kernel final : public Spacetime {
     MetricDescription out{M::name, {}, M::flat_at_infinity};
     const M defaults;
     std::apply(
-        [&](const auto&... p) { (out.parameters.push_back({p.name, defaults.*p.member, p.least, p.most}), ...); },
+        [&](const auto&... p) {
+          (out.parameters.push_back({p.name, defaults.*p.member, p.least, p.most}), ...);
+        },
         M::parameters);
     return out;
   }
@@ -199,7 +214,8 @@ class Kernel final : public Spacetime {
     }
     return out;
   }
-  std::vector<NamedValue> conserved(std::span<const double> values, const GeodesicPoint& point) const override {
+  std::vector<NamedValue> conserved(std::span<const double> values,
+                                    const GeodesicPoint& point) const override {
     std::vector<NamedValue> out;
     for (const auto& [name, value] :
          make_metric(values).conserved(Vec4<double>{point.event}, Vec4<double>{point.tangent}))
@@ -207,7 +223,8 @@ class Kernel final : public Spacetime {
     return out;
   }
 
-  std::unique_ptr<Tracer> prepare(std::span<const double> values, const Scene& scene, Unfit& unfit) const override {
+  std::unique_ptr<Tracer> prepare(std::span<const double> values, const Scene& scene,
+                                  Unfit& unfit) const override {
     auto tracer = std::make_unique<SceneTracer>(make_metric(values), scene);
     if (!tracer->place_objects(scene, unfit)) return nullptr;
     return tracer;

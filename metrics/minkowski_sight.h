@@ -1,4 +1,5 @@
-// Bounds for the search of crossings in flat spacetime: everything is straight, so the first bound is the answer.
+// Bounds for the search of crossings in flat spacetime: everything is straight, so the first bound is the
+// answer.
 #pragma once
 
 #include "core/trace/local_frame.h"
@@ -38,6 +39,8 @@ struct MinkowskiOrbit {
   }
 };
 
-inline MinkowskiOrbit make_orbit(const LocalFrame<Minkowski>& frame, double) { return {frame.start, frame.u}; }
+inline MinkowskiOrbit make_orbit(const LocalFrame<Minkowski>& frame, double) {
+  return {frame.start, frame.u};
+}
 
 NULLCONE_KERNEL_END

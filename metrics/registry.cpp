@@ -18,7 +18,8 @@ struct Entry {
   std::string_view metric, isa;
   const Spacetime& (*get)();
 };
-constexpr std::array kEntries = {Entry{"minkowski", "sse2", minkowski_sse2}, Entry{"goedel", "sse2", goedel_sse2}};
+constexpr std::array kEntries = {Entry{"minkowski", "sse2", minkowski_sse2},
+                                 Entry{"goedel", "sse2", goedel_sse2}};
 
 }  // namespace
 

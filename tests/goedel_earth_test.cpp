@@ -26,7 +26,9 @@ struct Image {
   double u_sum_cos = 0, u_sum_sin = 0;
 
   void add(const HitRecord& h, double azimuth, double elevation) {
-    const auto widen = [](double x, double& from, double& to) { from = std::min(from, x), to = std::max(to, x); };
+    const auto widen = [](double x, double& from, double& to) {
+      from = std::min(from, x), to = std::max(to, x);
+    };
     widen(azimuth, azimuth_from, azimuth_to);
     widen(elevation, elevation_from, elevation_to);
     widen(h.shift, g_from, g_to);
@@ -67,7 +69,8 @@ struct EarthPicture {
   static void parity(Image& image, const HitRecord& h, const HitRecord* to_right, const HitRecord* below) {
     if (!to_right || !below) return;
     const auto wrapped = [](double d) { return d - std::round(d); };
-    const double det = wrapped(to_right->u - h.u) * (h.v - below->v) - (to_right->v - h.v) * wrapped(h.u - below->u);
+    const double det =
+        wrapped(to_right->u - h.u) * (h.v - below->v) - (to_right->v - h.v) * wrapped(h.u - below->u);
     ++(det > 0 ? image.direct : image.mirrored);
   }
 };
@@ -104,7 +107,8 @@ TEST(GoedelEarth, HasTheThreeImagesOfTheTable) {
     EXPECT_NEAR(image.t_to, row.t[1], 0.006);
     EXPECT_NEAR(image.Z_from, row.Z[0], 0.006);
     EXPECT_NEAR(image.Z_to, row.Z[1], 0.006);
-    EXPECT_GT(row.mirrored ? image.mirrored : image.direct, 99 * (row.mirrored ? image.direct : image.mirrored));
+    EXPECT_GT(row.mirrored ? image.mirrored : image.direct,
+              99 * (row.mirrored ? image.direct : image.mirrored));
     EXPECT_EQ(image.odd_orders, row.mirrored ? static_cast<unsigned>(image.count) : 0U);
   }
 }

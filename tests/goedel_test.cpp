@@ -29,7 +29,8 @@ TEST(Goedel, MetricAndTetradAgreeWithReference) {
     const Vec4<double> x = to_vec4(c["inputs"]["event_txyz"]), v = to_vec4(c["inputs"]["vel"]);
     const auto g = metric.g(x);
     const json& want = c["expected"];
-    expect_case(c, "g_xx", g[1][1], want.contains("g_xx") ? double(want["g_xx"]) : double(want["g_xx_plus_1"]) - 1);
+    expect_case(c, "g_xx", g[1][1],
+                want.contains("g_xx") ? double(want["g_xx"]) : double(want["g_xx_plus_1"]) - 1);
     expect_case(c, "g_xy", g[1][2], want["g_xy"]);
     expect_case(c, "g_tx", g[0][1], want["g_tx"]);
     expect_case(c, "g_ty", g[0][2], want["g_ty"]);
@@ -46,7 +47,8 @@ TEST(Goedel, MetricAndTetradAgreeWithReference) {
 TEST(Goedel, GeodesicsThroughTheOrigin) {
   for (const json& c : cases_of("godel_origin_geodesic")) {
     const Goedel metric{c["inputs"]["a"]};
-    expect_point(c, metric.path(Vec4<double>{}, in_direction(c["inputs"])).at(c["inputs"]["lambda"].get<double>()));
+    expect_point(
+        c, metric.path(Vec4<double>{}, in_direction(c["inputs"])).at(c["inputs"]["lambda"].get<double>()));
   }
 }
 
@@ -76,7 +78,8 @@ TEST(Goedel, Periods) {
     const double caustic = want["first_caustic_lambda"];
     EXPECT_EQ(metric.caustics(caustic * (1 - 1e-12), n_z), 0U) << c["id"];
     EXPECT_EQ(metric.caustics(caustic * (1 + 1e-12), n_z), 1U) << c["id"];
-    EXPECT_EQ(metric.caustics(7.9999 * period, n_z), 15U) << c["id"];  // two a lobe, the last just before its end
+    EXPECT_EQ(metric.caustics(7.9999 * period, n_z), 15U)
+        << c["id"];  // two a lobe, the last just before its end
   }
 }
 
@@ -106,7 +109,8 @@ TEST(Goedel, TetradIsOrthonormal) {
   }
 }
 
-/// Second derivative of the closed form, by duals of duals, plus the connection from g: zero along a geodesic.
+/// Second derivative of the closed form, by duals of duals, plus the connection from g: zero along a
+/// geodesic.
 TEST(Goedel, GeodesicEquationHoldsAlongClosedForms) {
   using D = Dual<double, 1>;
   using DD = Dual<D, 1>;
@@ -117,7 +121,8 @@ TEST(Goedel, GeodesicEquationHoldsAlongClosedForms) {
     const double a = metric.a, speed = n % 2 ? 1.0 : random.uniform(0, 0.99);
     Vec4<double> start = random.event(3 * a);
     start[0] = start[3] = 0;
-    const auto path = metric.path(convert<DD>(convert<D>(start)), convert<DD>(convert<D>(moving(random.direction(), speed))));
+    const auto path = metric.path(convert<DD>(convert<D>(start)),
+                                  convert<DD>(convert<D>(moving(random.direction(), speed))));
     const double lambda = random.uniform(-10, 10) * a;
     const auto P = path.at(DD(D(lambda, Vec<double, 1>{{1.0}}), Vec<D, 1>{{D(1.0)}}));
     const auto x = Vec4<double>::map([&](std::size_t i) { return P.event[i].v.v; });
@@ -154,12 +159,13 @@ TEST(Goedel, ConservedQuantitiesAlongManyPeriods) {
     const auto before = metric.conserved(P.event, P.tangent), after = metric.conserved(Q.event, Q.tangent);
     const double grown = amplification(metric, P.event) * amplification(metric, Q.event);
     for (std::size_t i = 0; i < before.size(); ++i) {
-      const double unit = i == 0 || i == 2 ? 1 : a;  // E and p_z are frequencies, L and the others frequency x a
+      const double unit =
+          i == 0 || i == 2 ? 1 : a;  // E and p_z are frequencies, L and the others frequency x a
       EXPECT_NEAR(after[i].second, before[i].second, 1e-12 * unit * std::max(1.0, 0.05 * grown))
           << before[i].first << " a " << a << " n " << n;
     }
-    EXPECT_NEAR(inner(metric.g(Q.event), Q.tangent, Q.tangent), inner(metric.g(P.event), P.tangent, P.tangent),
-                1e-12 * std::max(1.0, 0.05 * grown));
+    EXPECT_NEAR(inner(metric.g(Q.event), Q.tangent, Q.tangent),
+                inner(metric.g(P.event), P.tangent, P.tangent), 1e-12 * std::max(1.0, 0.05 * grown));
   }
 }
 
@@ -176,7 +182,8 @@ TEST(Goedel, ManyPeriodsAgreeWithLongDouble) {
     const auto Q = metric.path(convert<long double>(start), convert<long double>(moving(d))).at(lambda);
     const double periods = 1 + std::fabs(lambda) / (2 * std::numbers::pi * a);
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(P.event[i], static_cast<double>(Q.event[i]), 1e-12 * 5 * a * periods) << "n " << n << " a " << a;
+      EXPECT_NEAR(P.event[i], static_cast<double>(Q.event[i]), 1e-12 * 5 * a * periods)
+          << "n " << n << " a " << a;
   }
 }
 
@@ -187,7 +194,8 @@ TEST(Goedel, IsometryLeavesTheMetricInvariant) {
   for (int n = 0; n < 3000; ++n) {
     const Goedel metric{random.logarithmic(1e-2, 1e3)};
     const Vec4<double> P = random.event(4 * metric.a), x = random.event(4 * metric.a);
-    const auto image = metric.to_origin(convert<D>(P), Vec4<D>::map([&](std::size_t i) { return D::variable(x[i], i); }));
+    const auto image =
+        metric.to_origin(convert<D>(P), Vec4<D>::map([&](std::size_t i) { return D::variable(x[i], i); }));
     const auto y = Vec4<double>::map([&](std::size_t i) { return image[i].v; });
     const auto g_there = metric.g(y);
     const auto tetrad = metric.static_tetrad(x), tetrad_there = metric.static_tetrad(y);
@@ -203,7 +211,8 @@ TEST(Goedel, IsometryLeavesTheMetricInvariant) {
     for (std::size_t k = 0; k < 4; ++k)
       EXPECT_NEAR(carried[1][k], expected[k], 1e-13 * grown * std::max(1.0, norm(expected)));
     const Vec4<double> back = metric.from_origin(P, y);
-    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(back[k], x[k], 1e-13 * grown * 4 * std::max(1.0, metric.a));
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(back[k], x[k], 1e-13 * grown * 4 * std::max(1.0, metric.a));
   }
 }
 

@@ -52,7 +52,8 @@ TEST(LocalFrame, GyroscopeAxesAreParallelTransported) {
 TEST(LocalFrame, StaticGyroscopesTurnWithTheDust) {
   for (const json& c : cases_of("godel_gyroscope")) {
     const double a = c["inputs"]["a"];
-    LocalFrame<Goedel> frame{Goedel{a}, {{0, 0.4, -0.3, 0}}, {{1, 0, 0, 0}}, true, {}, {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}}};
+    LocalFrame<Goedel> frame{
+        Goedel{a}, {{0, 0.4, -0.3, 0}}, {{1, 0, 0, 0}}, true, {}, {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}}};
     frame.prepare();
     const double tau = 0.8;
     const Vec3<double> turned = turn_about_e3(frame.worldline<double>().turn(tau),
@@ -65,7 +66,11 @@ TEST(LocalFrame, EventAndRestAreInverse) {
   Random random(2);
   for (int n = 0; n < 500; ++n) {
     const double a = random.logarithmic(0.5, 1e6), speed = random.uniform(0, 0.8);
-    LocalFrame<Goedel> frame{Goedel{a}, random.event(1), four_velocity(speed * random.direction()), n % 2 == 0, {},
+    LocalFrame<Goedel> frame{Goedel{a},
+                             random.event(1),
+                             four_velocity(speed * random.direction()),
+                             n % 2 == 0,
+                             {},
                              {{{{0, 1, 0}}, {{0, 0, 1}}, {{1, 0, 0}}}}};
     frame.prepare();
     const Vec3<double> X = random.uniform(0, 0.1) * random.direction();
@@ -79,8 +84,9 @@ TEST(LocalFrame, EventAndRestAreInverse) {
 }
 
 std::string goedel_scene(const std::string& placing, double radius, double t, const std::string& camera) {
-  return R"({"metric": {"name": "goedel"}, "observer": {"event": [)" + std::to_string(t) + R"(, 0, 0, 0]}, "camera": )" +
-         camera + R"(, "max_lookback": 7, "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": )" +
+  return R"({"metric": {"name": "goedel"}, "observer": {"event": [)" + std::to_string(t) +
+         R"(, 0, 0, 0]}, "camera": )" + camera +
+         R"(, "max_lookback": 7, "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": )" +
          std::to_string(radius) + R"(}, "placing": {"type": "local", )" + placing + "}}]}";
 }
 const std::string kRound = R"({"type": "sphere", "resolution": [720, 360]})";
@@ -109,20 +115,24 @@ TEST(StaticSphere, WithGyroscopeAxesShiftsAtTheEdges) {
 /// As R -> 0 the shift tends to eq. (6.1) for a free-falling point through the origin.
 TEST(FallingSphere, ShiftTendsToThePointFormula) {
   for (const json& c : cases_of("godel_frequency_shift")) {
-    const double a = c["inputs"]["a"], alpha = c["inputs"]["emitter_alpha"], beta = c["inputs"]["emitter_beta"];
+    const double a = c["inputs"]["a"], alpha = c["inputs"]["emitter_alpha"],
+                 beta = c["inputs"]["emitter_beta"];
     const double psi_e = c["inputs"]["psi_e"], expected = c["expected"]["g"];
     const Goedel metric{a};
     const double kappa = std::sqrt(1 - beta * beta / 2), gamma = 1 / std::sqrt(1 - beta * beta);
-    const LocalFrame<Goedel> frame{metric, {}, {{gamma, gamma * beta * std::cos(alpha), gamma * beta * std::sin(alpha), 0}},
-                                   true, {}, {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}}};
+    const LocalFrame<Goedel> frame{
+        metric, {}, {{gamma, gamma * beta * std::cos(alpha), gamma * beta * std::sin(alpha), 0}},
+        true,   {}, {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}}};
     const double tau = psi_e * std::numbers::sqrt2 * a / kappa / gamma;
     const PathPoint<double> P = frame.worldline<double>().at(tau);
-    // Planar light to the axis: psi = asin(u) (front) or pi - asin(u) (back); direction from the two-point solution.
+    // Planar light to the axis: psi = asin(u) (front) or pi - asin(u) (back); direction from the two-point
+    // solution.
     const double u = std::hypot(P.event[1], P.event[2]) / (2 * a);
     const bool front = c["inputs"]["image"] == "front";
     const double Psi = front ? std::asin(u) : std::numbers::pi - std::asin(u), kap = std::sqrt(0.5);
-    const double theta = Psi + std::atan((1 - kap) * std::sin(Psi) * std::cos(Psi) /
-                                         (kap * std::cos(Psi) * std::cos(Psi) + std::sin(Psi) * std::sin(Psi)));
+    const double theta =
+        Psi + std::atan((1 - kap) * std::sin(Psi) * std::cos(Psi) /
+                        (kap * std::cos(Psi) * std::cos(Psi) + std::sin(Psi) * std::sin(Psi)));
     const double view = std::atan2(P.event[2], P.event[1]) + theta;  // the look direction in the plane
     const Vec4<double> photon = {{1, -std::cos(view), -std::sin(view), 0}};
     const PathPoint<double> Q = metric.path(Vec4<double>{}, photon).at(-2 * a * Psi);

@@ -14,7 +14,9 @@ class Random {
   double normal() { return std::normal_distribution<double>()(engine_); }
   /// From `from` to `to`, evenly in the logarithm.
   double logarithmic(double from, double to) { return from * std::exp(uniform(0, std::log(to / from))); }
-  host::Vec3<double> direction() { return host::normalised(host::Vec3<double>{{normal(), normal(), normal()}}); }
+  host::Vec3<double> direction() {
+    return host::normalised(host::Vec3<double>{{normal(), normal(), normal()}});
+  }
   /// An event with |x|, |y| up to `reach`.
   host::Vec4<double> event(double reach) {
     return {{uniform(-5, 5), uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}};

@@ -22,8 +22,10 @@ TEST(SpecialRelativity, DopplerAndAberrationTables) {
       const Vec4<double> seen = boost(u, photon);
       // 1 - beta cos(theta) loses digits in plain form: gamma^2 eps.
       const double rounding = 4e-16 * u[0] * u[0];
-      EXPECT_NEAR(seen[0], row["D_borchers"].get<double>(), (1e-13 + rounding) * row["D_borchers"].get<double>() + 1e-13);
-      EXPECT_NEAR(seen[3] / seen[0], row["cos_theta_prime"].get<double>(), 1e-12 + rounding) << c["id"] << row["theta_deg"];
+      EXPECT_NEAR(seen[0], row["D_borchers"].get<double>(),
+                  (1e-13 + rounding) * row["D_borchers"].get<double>() + 1e-13);
+      EXPECT_NEAR(seen[3] / seen[0], row["cos_theta_prime"].get<double>(), 1e-12 + rounding)
+          << c["id"] << row["theta_deg"];
     }
   }
 }
@@ -55,14 +57,17 @@ TEST(SpecialRelativity, BoostIsALorentzTransformation) {
 }
 
 std::string moving_sphere(double beta, double t, const std::string& more = "") {
-  return R"({"metric": {"name": "minkowski"}, "observer": {"event": [)" + std::to_string(t) + R"(, 0, 0, 0])" + more +
+  return R"({"metric": {"name": "minkowski"}, "observer": {"event": [)" + std::to_string(t) +
+         R"(, 0, 0, 0])" + more +
          R"(}, "camera": {"type": "perspective", "fov_deg": 100, "resolution": [400, 300]},
     "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": 1}, "placing": {"type": "local",
-    "worldline": {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0, )" + std::to_string(beta) + ", 0]}}}]}";
+    "worldline": {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0, )" +
+         std::to_string(beta) + ", 0]}}}]}";
 }
 
-/// Penrose 1959: the outline of a moving sphere is a circle. For a static sphere at distance d the outline is the cone
-/// of half angle asin(R/d) about its direction; a boost maps cones to cones. Every ray must agree with the cone.
+/// Penrose 1959: the outline of a moving sphere is a circle. For a static sphere at distance d the outline is
+/// the cone of half angle asin(R/d) about its direction; a boost maps cones to cones. Every ray must agree
+/// with the cone.
 TEST(MovingSphere, OutlineIsACircleAndShiftIsDoppler) {
   for (const double beta : {0.0, 0.5, 0.9, 0.99}) {
     for (const double t : {3.0, 4.0, 7.0}) {
@@ -81,9 +86,11 @@ TEST(MovingSphere, OutlineIsACircleAndShiftIsDoppler) {
         // In the sphere's frame everything is a straight line: distance from a quadratic.
         const Vec3<double> n = (-1 / seen[0]) * spatial(seen);
         const double b = dot(n, from_centre), path = -b - std::sqrt(b * b - distance * distance + 1);
-        // lambda is measured at frequency 1 for the observer: path / frequency; near the edge the root is steep.
+        // lambda is measured at frequency 1 for the observer: path / frequency; near the edge the root is
+        // steep.
         EXPECT_NEAR(h.Z * seen[0], path, 1e-13 / h.mu * distance * u[0]);
-        EXPECT_NEAR(h.mu, std::sqrt(std::max(0.0, 1 - (distance * distance - b * b))), 1e-12 * distance * u[0] / h.mu);
+        EXPECT_NEAR(h.mu, std::sqrt(std::max(0.0, 1 - (distance * distance - b * b))),
+                    1e-12 * distance * u[0] / h.mu);
       });
       EXPECT_EQ(traced.rays_with(Status::step_limit), 0U);
       int edge = 0;
@@ -92,7 +99,8 @@ TEST(MovingSphere, OutlineIsACircleAndShiftIsDoppler) {
           const Vec4<double> seen = boost(u, moving(-traced.look(x, y)));
           const double cosine = dot((1 / seen[0]) * spatial(seen), from_centre) / distance;
           if (std::fabs(cosine - cone) < 1e-11) continue;  // within rounding of the outline
-          EXPECT_EQ(hit[y * 400 + x], cosine > cone) << "beta " << beta << " t " << t << " pixel " << x << "," << y;
+          EXPECT_EQ(hit[y * 400 + x], cosine > cone)
+              << "beta " << beta << " t " << t << " pixel " << x << "," << y;
           edge += cosine > cone;
         }
       if (beta < 0.6) {
@@ -104,9 +112,12 @@ TEST(MovingSphere, OutlineIsACircleAndShiftIsDoppler) {
 
 TEST(MovingObserver, SeesAberration) {
   const double beta = 0.8;
-  const Traced traced = trace_text(moving_sphere(0, 0, R"(, "velocity": [)" + std::to_string(beta) + ", 0, 0]"));
-  // The sphere ahead shrinks: sin of its half angle in the observer's frame by tan(a'/2) = sqrt((1-b)/(1+b)) tan(a/2).
-  const double half = std::asin(0.25), seen = 2 * std::atan(std::sqrt((1 - beta) / (1 + beta)) * std::tan(half / 2));
+  const Traced traced =
+      trace_text(moving_sphere(0, 0, R"(, "velocity": [)" + std::to_string(beta) + ", 0, 0]"));
+  // The sphere ahead shrinks: sin of its half angle in the observer's frame by tan(a'/2) = sqrt((1-b)/(1+b))
+  // tan(a/2).
+  const double half = std::asin(0.25),
+               seen = 2 * std::atan(std::sqrt((1 - beta) / (1 + beta)) * std::tan(half / 2));
   double widest = 0;
   traced.for_each_hit([&](const HitRecord& h, std::size_t x, std::size_t y) {
     const Vec3<double> look = traced.look(x, y);

@@ -23,8 +23,9 @@ struct Camera {
 
 NULLCONE_KERNEL_BEGIN
 
-/// The unit look direction m at picture coordinates (x, y), in pixels from the top left corner; the centre of pixel
-/// (i, j) is (i + 0.5, j + 0.5). The photon that arrives there moves along -m. Azimuth grows to the left.
+/// The unit look direction m at picture coordinates (x, y), in pixels from the top left corner; the centre of
+/// pixel (i, j) is (i + 0.5, j + 0.5). The photon that arrives there moves along -m. Azimuth grows to the
+/// left.
 template <class S>
 Vec3<S> look_direction(const Camera& camera, const S& x, const S& y) {
   const auto forward = convert<S>(camera.forward), left = convert<S>(camera.left), up = convert<S>(camera.up);

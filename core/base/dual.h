@@ -15,8 +15,7 @@ struct Dual {
   Dual(const S& value) : v(value) {}  // a constant; implicit, so that formulas read alike for every scalar
   Dual(const S& value, const Vec<S, N>& derivative) : v(value), d(derivative) {}
   template <class T>
-    requires(std::is_arithmetic_v<T> && !std::is_same_v<T, S>)
-  explicit Dual(T value) : v(S(value)) {}
+  requires(std::is_arithmetic_v<T> && !std::is_same_v<T, S>) explicit Dual(T value) : v(S(value)) {}
 
   /// The variable number `direction`.
   static Dual variable(const S& value, std::size_t direction) {
@@ -33,9 +32,7 @@ struct Dual {
     const S inverse = S(1.0) / b.v, quotient = a.v * inverse;
     return {quotient, inverse * (a.d - quotient * b.d)};
   }
-  friend bool operator<(const Dual& a, const Dual& b)
-    requires std::is_floating_point_v<S>
-  {
+  friend bool operator<(const Dual& a, const Dual& b) requires std::is_floating_point_v<S> {
     return a.v < b.v;
   }
 };

@@ -35,14 +35,21 @@ class DuplicateGuard {
 
   bool operator()(int depth, json::parse_event_t event, json& parsed) {
     using Event = json::parse_event_t;
-    if (depth > kDeepest)
-      throw InputError(place_ + ": " + pointer(), "nested deeper than 64 levels");
+    if (depth > kDeepest) throw InputError(place_ + ": " + pointer(), "nested deeper than 64 levels");
     switch (event) {
-      case Event::object_start: open(true); break;
-      case Event::array_start: open(false); break;
-      case Event::key: key(parsed.get_ref<const std::string&>()); break;
+      case Event::object_start:
+        open(true);
+        break;
+      case Event::array_start:
+        open(false);
+        break;
+      case Event::key:
+        key(parsed.get_ref<const std::string&>());
+        break;
       case Event::object_end:
-      case Event::array_end: levels_.pop_back(); break;
+      case Event::array_end:
+        levels_.pop_back();
+        break;
       case Event::value:
         if (!levels_.empty() && !levels_.back().is_object) ++levels_.back().index;
         break;
@@ -101,7 +108,8 @@ json parse_json(std::string_view text, const std::string& place) {
   try {
     return json::parse(text, DuplicateGuard(place));
   } catch (const json::parse_error& error) {
-    throw InputError(place + ": " + line_and_column(text, error.byte), "not valid JSON: " + tidy(error.what()));
+    throw InputError(place + ": " + line_and_column(text, error.byte),
+                     "not valid JSON: " + tidy(error.what()));
   } catch (const json::out_of_range&) {
     throw InputError(place, "not valid JSON: a number is too large for a double");
   }
@@ -114,13 +122,16 @@ json parse_json_file(const std::string& path, std::size_t largest) {
   std::vector<char> block(1 << 16);
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > largest) throw InputError(path, "larger than " + std::to_string(largest >> 20) + " MiB");
+    if (text.size() > largest)
+      throw InputError(path, "larger than " + std::to_string(largest >> 20) + " MiB");
   }
   if (in.bad()) throw InputError(path, "cannot read the file");
   return parse_json(text, path);
 }
 
-std::string canonical_json(const json& document) { return document.dump(-1, ' ', false, json::error_handler_t::replace); }
+std::string canonical_json(const json& document) {
+  return document.dump(-1, ' ', false, json::error_handler_t::replace);
+}
 
 JsonObject::JsonObject(const json& value, std::string place, std::string pointer)
     : value_(&value), place_(std::move(place)), pointer_(std::move(pointer)) {
@@ -182,7 +193,8 @@ std::string JsonObject::word(std::string_view key, const std::vector<std::string
   refuse(key, "'" + printable(found, 40) + "' is unknown; expected one of " + list);
 }
 
-std::string JsonObject::word(std::string_view key, const std::vector<std::string>& allowed, std::string fallback) {
+std::string JsonObject::word(std::string_view key, const std::vector<std::string>& allowed,
+                             std::string fallback) {
   known_.emplace(key);
   return has(key) ? word(key, allowed) : fallback;
 }

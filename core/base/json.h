@@ -10,8 +10,8 @@
 
 namespace nullcone {
 
-/// Parses text. `place` (a file's name) stands before every complaint. Syntax errors are reported with line and
-/// column, duplicate keys with their JSON pointer, nesting deeper than 64 is refused. UTF-8 only.
+/// Parses text. `place` (a file's name) stands before every complaint. Syntax errors are reported with line
+/// and column, duplicate keys with their JSON pointer, nesting deeper than 64 is refused. UTF-8 only.
 nlohmann::json parse_json(std::string_view text, const std::string& place);
 
 /// Reads and parses a file of at most `largest` bytes.
@@ -45,7 +45,8 @@ class JsonObject {
   double positive(std::string_view key);
   long integer(std::string_view key, long least, long most);
   /// A list of exactly `count` finite numbers within [least, most].
-  std::vector<double> numbers(std::string_view key, std::size_t count, double least = -kBig, double most = kBig);
+  std::vector<double> numbers(std::string_view key, std::size_t count, double least = -kBig,
+                              double most = kBig);
   std::vector<double> numbers_or(std::string_view key, std::vector<double> fallback, double least = -kBig,
                                  double most = kBig);
 

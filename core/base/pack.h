@@ -1,6 +1,6 @@
 // Packs: several rays side by side, and the few elementary functions that kernels may use on them.
-// The one place that knows xsimd. The architecture is always named, never xsimd's default, which has FMA: with
-// contraction off, every function here gives the same bits for one lane, SSE2, AVX2 and AVX-512.
+// The one place that knows xsimd. The architecture is always named, never xsimd's default, which has FMA:
+// with contraction off, every function here gives the same bits for one lane, SSE2, AVX2 and AVX-512.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,8 @@ struct SinCos {
   S sin, cos;
 };
 
-// One lane: plain double takes lane 0 of the SSE2 functions, so that it agrees with every pack to the last bit.
+// One lane: plain double takes lane 0 of the SSE2 functions, so that it agrees with every pack to the last
+// bit.
 inline SinCos<double> sincos(double x) {
   const auto [s, c] = xsimd::sincos(OneLane(x));
   return {s.get(0), c.get(0)};

@@ -5,8 +5,8 @@
 
 namespace nullcone {
 
-std::string version();        ///< "0.1.0"
-std::string commit();         ///< short hash at configuration time, or "unknown"
+std::string version();  ///< "0.1.0"
+std::string commit();   ///< short hash at configuration time, or "unknown"
 /// "nullcone 0.1.0 (commit)" as it stands in files.
 std::string code_version();
 

@@ -8,18 +8,22 @@
 
 namespace nullcone {
 
-static_assert(std::endian::native == std::endian::little, "payload hashes are defined over little-endian bytes");
+static_assert(std::endian::native == std::endian::little,
+              "payload hashes are defined over little-endian bytes");
 
 namespace {
 
 void check_columns(const Dataset& dataset, std::vector<std::string>& faults) {
   const std::size_t pixels = dataset.pixels(), count = dataset.hits.count();
-  if (dataset.hits.offset.size() != pixels + 1) faults.push_back("hits: the number of pixels is not width x height");
+  if (dataset.hits.offset.size() != pixels + 1)
+    faults.push_back("hits: the number of pixels is not width x height");
   for_each_channel(dataset.hits, kHitChannels, [&](const auto& channel, const auto& column) {
-    if (column.size() != count) faults.push_back("hits: channel " + std::string(channel.name) + " has a wrong length");
+    if (column.size() != count)
+      faults.push_back("hits: channel " + std::string(channel.name) + " has a wrong length");
   });
   for_each_channel(dataset.rays, kRayChannels, [&](const auto& channel, const auto& column) {
-    if (column.size() != pixels) faults.push_back("rays: channel " + std::string(channel.name) + " has a wrong length");
+    if (column.size() != pixels)
+      faults.push_back("rays: channel " + std::string(channel.name) + " has a wrong length");
   });
 }
 

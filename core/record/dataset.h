@@ -11,8 +11,8 @@ namespace nullcone {
 
 /// An object by its number in `Hits::id` (its place in the list, from 1).
 struct ObjectEntry {
-  std::string name;        ///< matches [A-Za-z][A-Za-z0-9_-]{0,31}
-  double tau_origin = 0;   ///< proper time at which the channel `tau` is 0
+  std::string name;       ///< matches [A-Za-z][A-Za-z0-9_-]{0,31}
+  double tau_origin = 0;  ///< proper time at which the channel `tau` is 0
   bool operator==(const ObjectEntry&) const = default;
 };
 

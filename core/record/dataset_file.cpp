@@ -36,7 +36,8 @@ constexpr Imf::PixelType pixel_type() {
 template <class Column>
 using Value = typename std::remove_cvref_t<Column>::value_type;
 
-Imf::Header part_header(const Manifest& manifest, const char* name, const char* type, Imf::Compression compression) {
+Imf::Header part_header(const Manifest& manifest, const char* name, const char* type,
+                        Imf::Compression compression) {
   Imf::Header header(manifest.width, manifest.height);
   header.setName(name);
   header.setType(type);
@@ -65,7 +66,8 @@ std::vector<Imf::Header> make_headers(const Dataset& dataset) {
 
 /// A slice of a flat part that lies in a plain array, `stride` bytes a pixel.
 Imf::Slice flat_slice(Imf::PixelType type, const void* base, std::size_t stride, int width) {
-  return {type, const_cast<char*>(static_cast<const char*>(base)), stride, stride * static_cast<std::size_t>(width)};
+  return {type, const_cast<char*>(static_cast<const char*>(base)), stride,
+          stride * static_cast<std::size_t>(width)};
 }
 
 /// For every channel a pointer a pixel into its column; counts a pixel. Deep EXR works on these.
@@ -76,8 +78,7 @@ struct DeepPointers {
 
   DeepPointers(Hits& hits, int width, std::size_t pixels) : counts(pixels) {
     const auto row = static_cast<std::size_t>(width);
-    buffer.insertSampleCountSlice(
-        flat_slice(Imf::UINT, counts.data(), sizeof(unsigned), width));
+    buffer.insertSampleCountSlice(flat_slice(Imf::UINT, counts.data(), sizeof(unsigned), width));
     pointers.reserve(std::tuple_size_v<decltype(kHitChannels)>);
     for_each_channel(hits, kHitChannels, [&](const auto& channel, auto& column) {
       using T = Value<decltype(column)>;
@@ -166,8 +167,8 @@ int find_part(const Imf::MultiPartInputFile& file, const std::string& name, cons
 
 /// The channels of a part are those of the table, with their types, over the manifest's picture.
 template <class Table, class Channels>
-void check_part(const Imf::Header& header, const Table& table, const Channels& channels, const Manifest& manifest,
-                const std::string& path) {
+void check_part(const Imf::Header& header, const Table& table, const Channels& channels,
+                const Manifest& manifest, const std::string& path) {
   const Imath::Box2i& window = header.dataWindow();
   if (window.min.x != 0 || window.min.y != 0 || window.max.x + 1 != manifest.width ||
       window.max.y + 1 != manifest.height)
@@ -182,7 +183,8 @@ void check_part(const Imf::Header& header, const Table& table, const Channels& c
 
 Manifest manifest_of(const Imf::MultiPartInputFile& file, const std::string& path) {
   const auto* attribute = file.header(0).findTypedAttribute<Imf::StringAttribute>(kManifest);
-  if (!attribute) throw InputError(path, "is an OpenEXR file, but not a nullcone dataset (no manifest in its header)");
+  if (!attribute)
+    throw InputError(path, "is an OpenEXR file, but not a nullcone dataset (no manifest in its header)");
   return manifest_from_json(attribute->value(), path + ": manifest");
 }
 
@@ -190,7 +192,8 @@ Manifest manifest_of(const Imf::MultiPartInputFile& file, const std::string& pat
 template <class Read>
 auto with_file(const std::string& path, Read&& read) {
   if (!looks_like_exr(path)) {
-    if (!std::ifstream(path)) throw InputError(path, "cannot open the file; expected a nullcone dataset (.exr)");
+    if (!std::ifstream(path))
+      throw InputError(path, "cannot open the file; expected a nullcone dataset (.exr)");
     throw InputError(path, "is not an OpenEXR file; expected a nullcone dataset (.exr)");
   }
   try {
@@ -215,7 +218,8 @@ void write_dataset(const std::string& path, const Dataset& dataset, const Previe
       write_hits(file, dataset);
       write_rays(file, dataset);
     }
-    if (std::rename(beside.c_str(), path.c_str()) != 0) throw WorkError(path, "cannot rename the finished file");
+    if (std::rename(beside.c_str(), path.c_str()) != 0)
+      throw WorkError(path, "cannot rename the finished file");
   } catch (const WorkError&) {
     std::remove(beside.c_str());
     throw;

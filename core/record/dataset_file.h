@@ -14,8 +14,8 @@ using Preview = std::vector<float>;
 /// Writes beside `path` and renames when complete; on failure nothing is left behind. Throws WorkError.
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview);
 
-/// Reads a whole dataset. A foreign, truncated or newer file throws InputError with the reason; the numbers are
-/// not verified against their hashes (see verify()).
+/// Reads a whole dataset. A foreign, truncated or newer file throws InputError with the reason; the numbers
+/// are not verified against their hashes (see verify()).
 Dataset read_dataset(const std::string& path);
 
 /// The manifest alone: the header is read, not the pixels.

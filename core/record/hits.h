@@ -47,7 +47,8 @@ inline constexpr std::tuple kHitChannels = {
     Channel{"shift", "frequency ratio g = observed / emitted; above 1 is blue", &Hits::shift},
     Channel{"t", "coordinate time of emission minus that of observation (scene units)", &Hits::t},
     Channel{"tau", "the object's proper time minus tau_origin in the manifest (scene units)", &Hits::tau},
-    Channel{"mu", "cosine of the emission angle from the outward normal, in the surface's rest frame", &Hits::mu},
+    Channel{"mu", "cosine of the emission angle from the outward normal, in the surface's rest frame",
+            &Hits::mu},
 };
 
 /// The channels of the flat part `rays`.

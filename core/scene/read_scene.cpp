@@ -39,12 +39,14 @@ Triple direction(JsonObject& object, std::string_view key, const std::vector<dou
 }
 
 /// Rows x, y, z: z along `z`, y as near to `y` as can be.
-std::array<Triple, 3> axes_from(JsonObject& object, std::string_view z_key, const std::vector<double>& z_default,
-                                std::string_view y_key, const std::vector<double>& y_default) {
+std::array<Triple, 3> axes_from(JsonObject& object, std::string_view z_key,
+                                const std::vector<double>& z_default, std::string_view y_key,
+                                const std::vector<double>& y_default) {
   const Triple z = direction(object, z_key, z_default), wish = direction(object, y_key, y_default);
   Triple x = cross(wish, z);
   const double length = std::sqrt(dot(x, x));
-  if (!(length > 1e-9)) object.refuse(y_key, "expected a direction that is not parallel to " + std::string(z_key));
+  if (!(length > 1e-9))
+    object.refuse(y_key, "expected a direction that is not parallel to " + std::string(z_key));
   for (double& component : x) component /= length;
   return {x, cross(z, x), z};
 }
@@ -59,11 +61,13 @@ Triple read_velocity(JsonObject& object, std::string_view key) {
   return v;
 }
 
-const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDescription> known, Scene& scene) {
+const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDescription> known,
+                                     Scene& scene) {
   std::vector<std::string> names;
   for (const MetricDescription& description : known) names.emplace_back(description.name);
   scene.metric = metric.word("name", names);
-  const auto found = std::find_if(known.begin(), known.end(), [&](const auto& d) { return d.name == scene.metric; });
+  const auto found =
+      std::find_if(known.begin(), known.end(), [&](const auto& d) { return d.name == scene.metric; });
   for (const MetricParameter& p : found->parameters)
     scene.metric_parameters[std::string(p.name)] = metric.number_or(p.name, p.fallback, p.least, p.most);
   metric.finish();
@@ -78,9 +82,11 @@ Observer read_observer(JsonObject observer) {
   return out;
 }
 
-/// The frame of the camera: azimuth from e1 towards e2, elevation towards e3, then roll about the look direction.
+/// The frame of the camera: azimuth from e1 towards e2, elevation towards e3, then roll about the look
+/// direction.
 void orient(Camera& camera, double azimuth, double elevation, double roll) {
-  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation), se = std::sin(elevation);
+  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation),
+               se = std::sin(elevation);
   camera.forward = {ce * ca, ce * sa, se};
   const Triple left = {-sa, ca, 0}, up = cross(camera.forward, left);
   const double cr = std::cos(roll), sr = std::sin(roll);
@@ -159,8 +165,8 @@ Placing read_placing(JsonObject placing) {
   } else {
     out.type = PlacingType::local;
     out.worldline = read_worldline(placing.object("worldline"));
-    out.gyroscope_axes =
-        placing.word("axes", {"gyroscope", "static"}, out.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
+    out.gyroscope_axes = placing.word("axes", {"gyroscope", "static"},
+                                      out.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
   }
   out.axes = axes_from(placing, "z_axis", {0, 0, 1}, "y_axis", {0, 1, 0});
   placing.finish();
@@ -174,7 +180,8 @@ void check_name(const JsonObject& object, const std::string& name, std::set<std:
   if (!fits)
     object.refuse("name", "expected a letter and up to 31 letters, digits, '_' or '-', found '" +
                               printable(name, 40) + "'");
-  if (!taken.insert(name).second) object.refuse("name", "'" + name + "' names two objects; expected different names");
+  if (!taken.insert(name).second)
+    object.refuse("name", "'" + name + "' names two objects; expected different names");
 }
 
 Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken) {
@@ -189,7 +196,8 @@ Object read_object(JsonObject object, const MetricDescription& metric, std::set<
 
 }  // namespace
 
-Scene read_scene(const std::string& text, const std::string& place, std::span<const MetricDescription> metrics) {
+Scene read_scene(const std::string& text, const std::string& place,
+                 std::span<const MetricDescription> metrics) {
   nlohmann::json document = parse_json(text, place);
   JsonObject root(document, place, "");
   Scene scene;

@@ -23,8 +23,9 @@ struct MetricDescription {
   bool flat_at_infinity = false;
 };
 
-/// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0 where the
-/// scene does not give one: the spacetime then says what suits it. Throws InputError.
-Scene read_scene(const std::string& text, const std::string& place, std::span<const MetricDescription> metrics);
+/// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0
+/// where the scene does not give one: the spacetime then says what suits it. Throws InputError.
+Scene read_scene(const std::string& text, const std::string& place,
+                 std::span<const MetricDescription> metrics);
 
 }  // namespace nullcone

@@ -20,13 +20,13 @@ struct Observer {
 
 enum class ShapeType { sphere, quad, sky };
 
-/// Shapes in their own frame: a sphere about the origin; a quad in the xy plane, centred, normal +z; the sky at
-/// infinity, by direction.
+/// Shapes in their own frame: a sphere about the origin; a quad in the xy plane, centred, normal +z; the sky
+/// at infinity, by direction.
 struct Shape {
   ShapeType type = ShapeType::sphere;
-  double radius = 0;                       ///< sphere
-  bool dome = false;                       ///< sphere: seen from inside
-  std::array<double, 2> edges = {0, 0};    ///< quad: lengths along x and y
+  double radius = 0;                     ///< sphere
+  bool dome = false;                     ///< sphere: seen from inside
+  std::array<double, 2> edges = {0, 0};  ///< quad: lengths along x and y
 };
 
 enum class PlacingType {
@@ -44,9 +44,10 @@ struct Worldline {
 
 struct Placing {
   PlacingType type = PlacingType::local;
-  Worldline worldline;         ///< local; for coordinate objects only the place of `event` counts
+  Worldline worldline;          ///< local; for coordinate objects only the place of `event` counts
   bool gyroscope_axes = false;  ///< local: parallel-transported axes; otherwise tied to the static tetrad
-  /// Rows: the object's x, y and z axes in the rest frame (boosted static axes) at proper time 0; orthonormal.
+  /// Rows: the object's x, y and z axes in the rest frame (boosted static axes) at proper time 0;
+  /// orthonormal.
   std::array<Triple, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };
 

@@ -1,4 +1,5 @@
-// Where a ray first meets a surface: safe steps along the path itself, then Newton's method to machine precision.
+// Where a ray first meets a surface: safe steps along the path itself, then Newton's method to machine
+// precision.
 #pragma once
 
 #include <limits>
@@ -14,14 +15,14 @@ inline constexpr int kSearchLimit = 2000;
 
 template <class S>
 struct Crossing {
-  S lambda{};        ///< where the surface is met, if `met`
+  S lambda{};  ///< where the surface is met, if `met`
   Mask<S> met{};
   Mask<S> given_up{};  ///< the search reached its limit, or its numbers broke down
   S steps{};
 };
 
-/// The first crossing with 0 < lambda < limit. `resolution` is what rounding leaves of a length of lambda. Each lane
-/// goes its own way: its numbers do not depend on its neighbours.
+/// The first crossing with 0 < lambda < limit. `resolution` is what rounding leaves of a length of lambda.
+/// Each lane goes its own way: its numbers do not depend on its neighbours.
 template <class S, class Ray, class Shape>
 Crossing<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, const S& resolution) {
   Crossing<S> out;
@@ -50,8 +51,8 @@ Crossing<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, c
 struct Meeting {
   double tau;
   Vec3<double> X;
-  double value;            ///< of the shape's function
-  Vec4<double> gradient;   ///< its chart gradient, at the proper time that belongs to each event
+  double value;           ///< of the shape's function
+  Vec4<double> gradient;  ///< its chart gradient, at the proper time that belongs to each event
 };
 
 template <class Body, class Shape>
@@ -70,7 +71,8 @@ Meeting meet(const Body& body, const Shape& shape, const Vec4<double>& event, do
   }
   const D value = shape.value(X);
   Meeting out{tau, {{X[0].v, X[1].v, X[2].v}}, value.v, {}};
-  for (std::size_t i = 0; i < 4; ++i) out.gradient[i] = value.d[i] - value.d[4] * late_slope[i] / late_slope[4];
+  for (std::size_t i = 0; i < 4; ++i)
+    out.gradient[i] = value.d[i] - value.d[4] * late_slope[i] / late_slope[4];
   return out;
 }
 

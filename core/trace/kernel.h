@@ -18,22 +18,26 @@ struct Placed {
   Shape shape;
 };
 template <class M>
-using AnyPlaced = std::variant<Placed<RestPlacing<M>, LocalBody<M>, Sphere>, Placed<RestPlacing<M>, LocalBody<M>, Quad>,
-                               Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Quad>,
-                               Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
-                               Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
+using AnyPlaced =
+    std::variant<Placed<RestPlacing<M>, LocalBody<M>, Sphere>, Placed<RestPlacing<M>, LocalBody<M>, Quad>,
+                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Quad>,
+                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
+                 Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
 
 /// The rays of a band, and the nearest crossing found so far; structure of arrays, padded to whole packs.
 struct BandRays {
   std::size_t count = 0, padded = 0;
   std::unique_ptr<double[]> memory;
-  std::array<double*, 4> k{};          ///< past-directed tangent in the static tetrad
+  std::array<double*, 4> k{};  ///< past-directed tangent in the static tetrad
   double *limit = nullptr, *steps = nullptr;
   std::unique_ptr<std::uint32_t[]> nearest;  ///< object number from 1, 0 for none
   std::unique_ptr<bool[]> doubtful;
 
   explicit BandRays(std::size_t rays)
-      : count(rays), padded((rays + 7) / 8 * 8), memory(new double[6 * padded]), nearest(new std::uint32_t[padded]()),
+      : count(rays),
+        padded((rays + 7) / 8 * 8),
+        memory(new double[6 * padded]),
+        nearest(new std::uint32_t[padded]()),
         doubtful(new bool[padded]()) {
     for (std::size_t i = 0; i < 4; ++i) k[i] = memory.get() + i * padded;
     limit = memory.get() + 4 * padded;
@@ -43,7 +47,8 @@ struct BandRays {
 
 /// Camera rays of a band: the photon that arrives at each pixel, followed into the past.
 template <class S>
-void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, double lookback, BandRays& rays) {
+void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, double lookback,
+         BandRays& rays) {
   const Vec4<S> u = convert<S>(u_camera);
   const auto width = static_cast<std::size_t>(camera.width);
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
@@ -103,8 +108,16 @@ HitRecord record(const M& metric, const Placed<Placing, Body, Shape>& object, co
   const double mu = std::fabs(dot(here.gradient, P.tangent)) / (frequency * steepness);
   const auto [tex_u, tex_v] = object.shape.uv(here.X);
   const double n_z = past[3] / past[0];
-  return {0, 0, metric.caustics(-past[0] * lambda, n_z), lambda, tex_u, tex_v, 1 / frequency,
-          P.event[0] - observation[0], here.tau - tau_origin, std::fmin(mu, 1.0)};
+  return {0,
+          0,
+          metric.caustics(-past[0] * lambda, n_z),
+          lambda,
+          tex_u,
+          tex_v,
+          1 / frequency,
+          P.event[0] - observation[0],
+          here.tau - tau_origin,
+          std::fmin(mu, 1.0)};
 }
 
 NULLCONE_KERNEL_END

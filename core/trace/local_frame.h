@@ -1,4 +1,5 @@
-// The frame of a rigid object on a geodesic worldline: which proper time and which local position is an event?
+// The frame of a rigid object on a geodesic worldline: which proper time and which local position is an
+// event?
 #pragma once
 
 #include "core/base/boost.h"
@@ -26,15 +27,16 @@ Vec3<S> turn_about_e3(const Complex<S>& turn, const Vec3<S>& X) {
   return {{w.re, w.im, X[2]}};
 }
 
-/// A rigid local object: P(tau) a geodesic (or static) worldline; a point X of the object at its proper time tau is
-/// the event that the isometry of P(tau) makes of the boosted (0, X). Exact where the metric has isometries.
+/// A rigid local object: P(tau) a geodesic (or static) worldline; a point X of the object at its proper time
+/// tau is the event that the isometry of P(tau) makes of the boosted (0, X). Exact where the metric has
+/// isometries.
 template <Metric M>
 struct LocalFrame {
   M metric;
-  Vec4<double> start;         ///< P(0)
-  Vec4<double> u;             ///< 4-velocity in the static tetrad at P(0)
-  bool gyroscope = false;     ///< axes parallel-transported, or tied to the static tetrad
-  Precession precession;      ///< set by prepare()
+  Vec4<double> start;      ///< P(0)
+  Vec4<double> u;          ///< 4-velocity in the static tetrad at P(0)
+  bool gyroscope = false;  ///< axes parallel-transported, or tied to the static tetrad
+  Precession precession;   ///< set by prepare()
   Matrix3<double> axes = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};  ///< rows: the object's axes at tau = 0
 
   template <class S>
@@ -42,7 +44,8 @@ struct LocalFrame {
     return metric.path(convert<S>(start), convert<S>(u));
   }
 
-  /// (T', X'): T' (zero for events simultaneous with P(tau) in the rest frame) and position along the boosted static axes.
+  /// (T', X'): T' (zero for events simultaneous with P(tau) in the rest frame) and position along the boosted
+  /// static axes.
   template <class S>
   Vec4<S> rest(const Vec4<S>& event, const S& tau) const {
     const PathPoint<S> P = worldline<S>().at(tau);
@@ -59,15 +62,17 @@ struct LocalFrame {
   /// The event of the point X of the object at its proper time tau.
   template <class S>
   Vec4<S> event(const S& tau, const Vec3<S>& X) const {
-    Vec3<S> rest_position = X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
-    if (gyroscope) rest_position = turn_about_e3(worldline<S>().turn(tau), precession.rotate(tau, rest_position, 1));
+    Vec3<S> rest_position =
+        X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
+    if (gyroscope)
+      rest_position = turn_about_e3(worldline<S>().turn(tau), precession.rotate(tau, rest_position, 1));
     const PathPoint<S> P = worldline<S>().at(tau);
     const Vec4<S> local = {{S(0.0), rest_position[0], rest_position[1], rest_position[2]}};
     return metric.from_origin(P.event, boost(opposite(P.local), local));
   }
 
-  /// Finds how gyroscopes precess. By symmetry the rate against the frame that the Killing flow along P carries is
-  /// constant, so the derivative at tau = 0 tells all of it.
+  /// Finds how gyroscopes precess. By symmetry the rate against the frame that the Killing flow along P
+  /// carries is constant, so the derivative at tau = 0 tells all of it.
   void prepare();
 };
 
@@ -78,8 +83,8 @@ inline Vec3<double> golden_point(int n, int count) {
   return {{flat * c, flat * s, z}};
 }
 
-/// The proper time at which `event` is simultaneous with P in the rest frame: Newton's method from a first guess.
-/// NaN where there is none nearby.
+/// The proper time at which `event` is simultaneous with P in the rest frame: Newton's method from a first
+/// guess. NaN where there is none nearby.
 template <Metric M>
 double proper_time(const LocalFrame<M>& frame, const Vec4<double>& event, double tau) {
   using D = Dual<double, 1>;

@@ -51,7 +51,9 @@ concept Metric = requires(const M m, Vec4<double> x) {
 };
 
 template <class M>
-concept HasClosedPaths = requires(const M m, Vec4<double> x) { m.path(x, x).at(1.0); };
+concept HasClosedPaths = requires(const M m, Vec4<double> x) {
+  m.path(x, x).at(1.0);
+};
 
 template <class M>
 concept HasIsometry = requires(const M m, Vec4<double> x) {
@@ -104,8 +106,8 @@ Vec4<S> connection(const M& metric, const Vec4<S>& x, const Vec4<S>& u, const Ve
   return solve(metric.g(x), lower);
 }
 
-/// Orthonormal frame from the observer at rest in the chart and the coordinate axes d_x, d_y, d_z, in this order.
-/// Not defined where d_t is not timelike.
+/// Orthonormal frame from the observer at rest in the chart and the coordinate axes d_x, d_y, d_z, in this
+/// order. Not defined where d_t is not timelike.
 template <Metric M, class S>
 Tetrad<S> gram_schmidt_tetrad(const M& metric, const Vec4<S>& x) {
   const Matrix4<S> g = metric.g(x);

@@ -1,4 +1,5 @@
-// Placings: an object's frame as the search sees it (fast, over packs) and as the record sees it (exact, one lane).
+// Placings: an object's frame as the search sees it (fast, over packs) and as the record sees it (exact, one
+// lane).
 #pragma once
 
 #include "core/trace/local_frame.h"
@@ -13,14 +14,15 @@ struct RayStart {
   Vec4<S> k;
 };
 
-/// For the search: an object at rest in the chart, or in the chart that the isometry of its worldline's event makes.
+/// For the search: an object at rest in the chart, or in the chart that the isometry of its worldline's event
+/// makes.
 template <Metric M>
 struct RestPlacing {
   M metric;
-  Vec4<double> place;   ///< event of the worldline, or the place in the chart
-  bool local;           ///< whether `place` is carried to the origin
+  Vec4<double> place;  ///< event of the worldline, or the place in the chart
+  bool local;          ///< whether `place` is carried to the origin
   Matrix3<double> axes;
-  double ball;          ///< bounding radius of the shape
+  double ball;  ///< bounding radius of the shape
 
   template <class S>
   struct Ray {
@@ -29,7 +31,8 @@ struct RestPlacing {
 
     Sight<S> at(const S& lambda) const {
       const PathPoint<S> P = path.at(lambda);
-      const Matrix3<S> rows = {convert<S>(placing->axes[0]), convert<S>(placing->axes[1]), convert<S>(placing->axes[2])};
+      const Matrix3<S> rows = {convert<S>(placing->axes[0]), convert<S>(placing->axes[1]),
+                               convert<S>(placing->axes[2])};
       Sight<S> out;
       out.X = spatial(P.event);
       if (!placing->local) out.X = out.X - spatial(convert<S>(placing->place));
@@ -79,7 +82,8 @@ struct MovingPlacing {
       return out;
     }
 
-    /// Position and slope in the rest frame: Newton's method for the proper time, and implicit differentiation.
+    /// Position and slope in the rest frame: Newton's method for the proper time, and implicit
+    /// differentiation.
     void locate(const S& lambda, S tau, Sight<S>& out) const {
       const PathPoint<S> P = path.at(lambda);
       using D1 = Dual<S, 1>;
@@ -88,8 +92,9 @@ struct MovingPlacing {
         tau = tau - late.v / late.d[0];
       }
       using D2 = Dual<S, 2>;  // derivatives along lambda and tau
-      const auto event =
-          Vec4<D2>::map([&](std::size_t i) { return D2(P.event[i], Vec<S, 2>{{P.tangent[i], S(0.0)}}); });
+      const auto event = Vec4<D2>::map([&](std::size_t i) {
+        return D2(P.event[i], Vec<S, 2>{{P.tangent[i], S(0.0)}});
+      });
       const D2 time(tau, Vec<S, 2>{{S(0.0), S(1.0)}});
       const Vec4<D2> rest = placing->frame.rest(event, time);
       const Vec3<D2> X = placing->isotropic ? spatial(rest) : placing->frame.to_object(time, spatial(rest));

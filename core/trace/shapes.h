@@ -31,7 +31,8 @@ struct Sphere {
       const S c = S(-2.0) * (ray.slope_max * ray.slope_max + farthest * ray.bend_max);
       return first_root(value(ray.X), S(-2.0) * along, c, ray.valid);
     }
-    // From afar the impact parameter |X x X'|/|X'| is known to rounding of |X|: aim at a sphere larger by that.
+    // From afar the impact parameter |X x X'|/|X'| is known to rounding of |X|: aim at a sphere larger by
+    // that.
     const S R = S(radius) + S(4e-15) * distance, F = (distance - R) * (distance + R);
     const S c = ray.slope_min * ray.slope_min - farthest * ray.bend_max;
     // (X.X')^2 - c F without cancellation; the last term is zero along straight lines.
@@ -62,8 +63,9 @@ struct Quad {
     return X[2];
   }
 
-  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest speed. Within
-  /// `resolution` (a length of lambda) the rectangle counts as met: rounding may have carried the ray across.
+  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest
+  /// speed. Within `resolution` (a length of lambda) the rectangle counts as met: rounding may have carried
+  /// the ray across.
   template <class S>
   S safe_step(const Sight<S>& ray, const S& resolution) const {
     const S out_x = max(abs(ray.X[0]) - S(half_x), S(0.0)), out_y = max(abs(ray.X[1]) - S(half_y), S(0.0));

@@ -8,8 +8,9 @@ NULLCONE_KERNEL_BEGIN
 /// Stands for "as far as you like": a step this long ends the search.
 inline constexpr double kFar = 1e300;
 
-/// The ray at one affine parameter, seen from an object: position X and slope dX/dlambda in the object's frame, and
-/// bounds that hold for the next `valid` of lambda. Where the object is far away, only `clearance` is set.
+/// The ray at one affine parameter, seen from an object: position X and slope dX/dlambda in the object's
+/// frame, and bounds that hold for the next `valid` of lambda. Where the object is far away, only `clearance`
+/// is set.
 template <class S>
 struct Sight {
   Vec3<S> X, slope;
@@ -19,8 +20,8 @@ struct Sight {
   S bend_max{};                ///< of |d2X/dlambda2|
 };
 
-/// The smallest delta >= 0 at which f + f' delta + c delta^2/2 = 0 for f > 0, or `none`. If c is a lower bound of
-/// f'', then f has no root before delta.
+/// The smallest delta >= 0 at which f + f' delta + c delta^2/2 = 0 for f > 0, or `none`. If c is a lower
+/// bound of f'', then f has no root before delta.
 template <class S>
 S first_root(const S& f, const S& slope, const S& c, const S& none) {
   const S discriminant = slope * slope - S(2.0) * c * f;

@@ -58,7 +58,8 @@ struct NamedValue {
   double value;
 };
 
-/// A compiled kernel: stateless; the metric's parameters are given with each call, in the order of parameters().
+/// A compiled kernel: stateless; the metric's parameters are given with each call, in the order of
+/// parameters().
 class Spacetime {
  public:
   virtual ~Spacetime() = default;
@@ -67,12 +68,14 @@ class Spacetime {
   virtual double default_lookback(std::span<const double> parameters) const = 0;
 
   /// Axes e_0 … e_3 of the static tetrad at an event, in chart components.
-  virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters, const Event& event) const = 0;
+  virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters,
+                                             const Event& event) const = 0;
   /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter.
-  virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event, const Event& k,
-                                              std::span<const double> lambda) const = 0;
+  virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event,
+                                              const Event& k, std::span<const double> lambda) const = 0;
   /// Constants of motion of the geodesic through the point.
-  virtual std::vector<NamedValue> conserved(std::span<const double> parameters, const GeodesicPoint& point) const = 0;
+  virtual std::vector<NamedValue> conserved(std::span<const double> parameters,
+                                            const GeodesicPoint& point) const = 0;
 
   /// Makes a scene ready, or fills `unfit` and returns nothing.
   virtual std::unique_ptr<Tracer> prepare(std::span<const double> parameters, const Scene& scene,

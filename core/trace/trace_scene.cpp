@@ -74,8 +74,8 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   throw InputError(place + ": /objects/" + std::to_string(unfit.object), message);
 }
 
-std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads, const Progress& progress,
-                                    double& core_seconds) {
+std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads,
+                                    const Progress& progress, double& core_seconds) {
   const int bands = (camera.height + kBandLines - 1) / kBandLines;
   const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
   std::vector<TracedBand> out(static_cast<std::size_t>(bands));
@@ -95,7 +95,8 @@ std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, 
     if (progress) progress(now, width * height);
   };
   std::optional<tbb::global_control> limit;
-  if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::parallel_for(0, bands, trace_one);
   core_seconds = 1e-9 * static_cast<double>(nanoseconds.load());
   return out;

@@ -17,13 +17,13 @@ struct TracedBand {
   std::vector<RayRecord> rays;
 };
 
-/// Chooses max_lookback where the scene leaves it open, and makes the scene ready. Throws InputError (with the object's
-/// JSON pointer) for what the spacetime cannot hold.
+/// Chooses max_lookback where the scene leaves it open, and makes the scene ready. Throws InputError (with
+/// the object's JSON pointer) for what the spacetime cannot hold.
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place);
 
 /// Traces every band. The numbers do not depend on the number of threads (0: as many as there are cores).
-std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads, const Progress& progress,
-                                    double& core_seconds);
+std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads,
+                                    const Progress& progress, double& core_seconds);
 
 /// The whole way: prepares, traces, gathers, fingerprints.
 Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& place, int threads = 0,

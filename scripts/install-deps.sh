@@ -1,0 +1,34 @@
+#!/bin/bash
+# Installs the Debian packages that Nullcone needs (Debian 12). Quiet and quick when they are there.
+#   scripts/install-deps.sh          to build and run
+#   scripts/install-deps.sh --test   also what scripts/test.sh needs
+set -eu
+packages=(
+  g++ cmake ninja-build pkg-config git ca-certificates
+  libboost-dev          # Odeint
+  libeigen3-dev         # small linear algebra in post-rendering
+  libxsimd-dev          # packs of rays
+  libtbb-dev            # threads
+  libopenexr-dev libimath-dev   # datasets
+  libopenimageio-dev    # textures and pictures
+  nlohmann-json3-dev libcli11-dev libssl-dev   # JSON, command lines, SHA-256
+  libgtest-dev libbenchmark-dev   # tests and benchmarks
+  xplanet-images        # the map of the Earth that the demo shows
+)
+[ "${1:-}" = --test ] && packages+=(clang-format clang-tidy python3 openexr)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "install-deps: needs root or sudo to install: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "install-deps: installing ${missing[*]}" >&2
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get -qq update
+"${as_root[@]}" apt-get -qq -y --no-install-recommends install "${missing[@]}" >/dev/null
