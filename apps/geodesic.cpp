@@ -1,5 +1,6 @@
 // nullcone-geodesic: one light ray or falling particle, by numbers.
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -40,9 +41,23 @@ std::vector<double> parameter_values(const MetricDescription& metric,
   return values;
 }
 
-void check_finite(const std::string& option, const std::vector<double>& values) {
-  for (const double value : values)
-    if (!std::isfinite(value)) throw InputError(option, "expected finite numbers");
+/// "1,-2,.5": finite numbers with single commas between them; `count` of them, or any number where it is 0.
+std::vector<double> numbers(const std::string& option, const std::string& text, std::size_t count = 0) {
+  std::vector<double> out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    const std::string one = text.substr(from, to - from);
+    char* end = nullptr;
+    out.push_back(std::strtod(one.c_str(), &end));
+    if (one.empty() || *end != '\0' || !std::isfinite(out.back()))
+      throw InputError(option, "expected finite numbers with single commas between them, found '" +
+                                   printable(one, 40) + "'");
+    from = to + 1;
+  }
+  if (count != 0 && out.size() != count)
+    throw InputError(option,
+                     "expected " + std::to_string(count) + " numbers, found " + std::to_string(out.size()));
+  return out;
 }
 
 /// Components in the static tetrad: a photon of frequency 1, or gamma (1, speed n) over gamma, so that lambda
@@ -79,31 +94,28 @@ int main(int argc, char** argv) {
   CLI::App app("Follows one geodesic, null or timelike, through a spacetime.", "nullcone-geodesic");
   std::string name, paths = "closed";
   std::vector<std::string> settings;
-  std::vector<double> event, direction, at;
+  std::string event_text, direction_text, at_text;
   double speed = 1;
   bool as_json = false;
   ToolOptions options;
   app.add_option("--metric", name, "Spacetime")->required();
   app.add_option("--set", settings, "Parameter of the spacetime, key=value")->allow_extra_args(false);
-  app.add_option("--event", event, "Where it passes: t,x,y,z")->delimiter(',')->expected(4)->required();
-  app.add_option("--direction", direction,
+  app.add_option("--event", event_text, "Where it passes: t,x,y,z")->required();
+  app.add_option("--direction", direction_text,
                  "Unit spatial direction n1,n2,n3 in the static tetrad, future-directed")
-      ->delimiter(',')
-      ->expected(3)
       ->required();
   const auto* has_speed =
       app.add_option("--speed", speed, "Local speed of a particle (below 1); without it, light");
   app.add_option("--paths", paths, "How the path is found")->check(CLI::IsMember({"closed"}));
-  app.add_option("--at", at, "Affine parameters l1,l2,... (negative: the past)")->delimiter(',')->required();
+  app.add_option("--at", at_text, "Affine parameters l1,l2,... (negative: the past)")->required();
   app.add_flag("--json", as_json, "Report as JSON");
   add_common_options(app, options);
 
   return run_tool(app, argc, argv, [&] {
     const Spacetime& spacetime = find_spacetime(name);
     const std::vector<double> values = parameter_values(spacetime.description(), settings);
-    check_finite("--event", event);
-    check_finite("--direction", direction);
-    check_finite("--at", at);
+    const std::vector<double> event = numbers("--event", event_text, 4), at = numbers("--at", at_text);
+    const std::vector<double> direction = numbers("--direction", direction_text, 3);
     if (*has_speed && !(speed >= 0 && speed < 1))
       throw InputError("--speed", "expected a number from 0 to below 1");
     const Event k = tangent_in_tetrad(direction, speed), start = {event[0], event[1], event[2], event[3]};

@@ -1,10 +1,12 @@
 // nullcone-info: what a dataset holds, how it came to be, and whether it is whole.
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/tool.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/record/dataset_file.h"
 
 namespace {
@@ -55,7 +57,7 @@ json summary(const Dataset& dataset) {
   std::uint64_t most = 0;
   for (std::size_t i = 0; i + 1 < dataset.hits.offset.size(); ++i)
     most = std::max(most, dataset.hits.offset[i + 1] - dataset.hits.offset[i]);
-  const json scene = json::parse(m.scene, nullptr, false);
+  const json scene = parse_json(m.scene, "manifest: scene");  // refuses what is nested too deep to print
   return {
       {"width", m.width},
       {"height", m.height},
@@ -106,11 +108,27 @@ json pixel_records(const Dataset& dataset, const std::vector<int>& pixel) {
           {"hits", hits}};
 }
 
+/// One line a fault on standard output, status 1; a file that cannot even be read is one fault.
+int report_faults(const std::string& path, bool quiet) {
+  std::vector<std::string> faults;
+  if (!std::ifstream(path))
+    throw InputError(path, "cannot open the file; expected a nullcone dataset (.exr)");
+  try {
+    for (const std::string& fault : verify(read_dataset(path))) faults.push_back(path + ": " + fault);
+  } catch (const InputError& error) {
+    faults.emplace_back(error.what());
+  }
+  for (const std::string& fault : faults) std::cout << printable(fault, 1000) << '\n';
+  if (faults.empty() && !quiet) std::cerr << path << ": whole and true\n";
+  return faults.empty() ? 0 : 1;
+}
+
 /// Lines "key: value" for people; the scene itself is left to --json.
 void print_plainly(json report) {
   report.erase("scene");
   for (const auto& [key, value] : report.items())
-    std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
+    std::cout << key << ": " << (value.is_string() ? printable(value.get<std::string>(), 1000) : value.dump())
+              << '\n';
 }
 
 }  // namespace
@@ -123,20 +141,17 @@ int main(int argc, char** argv) {
   ToolOptions options;
   app.add_option("DATA", path, "Dataset (.exr)")->required();
   app.add_flag("--json", as_json, "Report as JSON");
-  app.add_option("--pixel", pixel, "All records of the pixel X,Y, counted from 0 at the top left")
-      ->delimiter(',')
-      ->expected(2);
-  app.add_flag("--verify", check, "Check counts, channels and fingerprints; one line a fault, exit status 1");
+  auto* one_pixel =
+      app.add_option("--pixel", pixel, "All records of the pixel X,Y, counted from 0 at the top left")
+          ->delimiter(',')
+          ->expected(2);
+  app.add_flag("--verify", check, "Check counts, channels and fingerprints; one line a fault, exit status 1")
+      ->excludes(one_pixel);
   add_common_options(app, options);
 
   return run_tool(app, argc, argv, [&] {
+    if (check) return report_faults(path, options.quiet);
     const Dataset dataset = read_dataset(path);
-    if (check) {
-      const auto faults = verify(dataset);
-      for (const std::string& fault : faults) std::cout << path << ": " << fault << '\n';
-      if (faults.empty() && !options.quiet) std::cerr << path << ": whole and true\n";
-      return faults.empty() ? 0 : 1;
-    }
     const json report = pixel.empty() ? summary(dataset) : pixel_records(dataset, pixel);
     if (as_json)
       std::cout << report.dump(2) << '\n';

@@ -3,6 +3,7 @@
 #include <OpenEXR/OpenEXRConfig.h>
 #include <oneapi/tbb/version.h>
 #include <boost/version.hpp>
+#include <csignal>
 #include <iostream>
 #include <new>
 
@@ -40,6 +41,7 @@ ToolOptions& add_common_options(CLI::App& app, ToolOptions& options) {
 }
 
 int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error to report, not a death
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

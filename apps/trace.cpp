@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -17,14 +18,16 @@ using namespace nullcone;
 
 /// The text of a scene: a JSON file, or the scene that a dataset carries in its header.
 std::string scene_text(const std::string& path) {
-  if (looks_like_exr(path)) return read_manifest(path).scene;
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in(path, std::ios::binary);  // read once, from the front: it may be a pipe
   if (!in) throw InputError(path, "cannot open the file; expected a scene (.json) or a dataset (.exr)");
   std::string text;
-  constexpr std::size_t kLargest = std::size_t{64} << 20;
-  for (std::istreambuf_iterator<char> c(in), end; c != end; ++c) {
-    if (text.size() == kLargest) throw InputError(path, "is larger than 64 MiB; expected a scene");
-    text += *c;
+  std::vector<char> block(4);
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+    if (text == "\x76\x2f\x31\x01") return read_manifest(path).scene;
+    if (text.size() > std::size_t{64} << 20)
+      throw InputError(path, "is larger than 64 MiB; expected a scene");
+    block.resize(1 << 16);
   }
   if (in.bad() || text.empty())
     throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
@@ -69,6 +72,7 @@ void check_writable(const std::string& path) {
   const std::string probe = path + ".part-probe";
   const bool fits = path.size() > 4 && path.ends_with(".exr");
   if (!fits) throw InputError(path, "expected a name that ends in .exr");
+  if (std::filesystem::is_directory(path)) throw InputError(path, "is a folder; expected the name of a file");
   if (!std::ofstream(probe)) throw WorkError(path, "cannot write there (no such folder, or no permission)");
   std::remove(probe.c_str());
 }

@@ -120,12 +120,11 @@ class SceneTracer final : public Tracer {
       return false;
     }
     const Meeting here = meet(placed.body, placed.shape, observation_, placed.body.first_guess(observation_));
-    if (shape.type == ShapeType::sphere && shape.dome && !(here.value > 0)) {
-      unfit.reason = "is a dome, but the observer stands outside it";
-      return false;
-    }
-    if (shape.type == ShapeType::sphere && !shape.dome && here.value <= 0) {
-      unfit.reason = "holds the observer; a sphere that is seen from inside needs \"dome\": true";
+    if (placed.shape.hides(here.X)) {
+      unfit.reason = shape.type == ShapeType::quad ? "holds the observer in its surface"
+                     : shape.dome
+                         ? "is a dome, but the observer stands outside it"
+                         : "holds the observer; a sphere that is seen from inside needs \"dome\": true";
       return false;
     }
     return true;

@@ -135,7 +135,8 @@ TEST(Json, LongTextsAreReadAndComplaintsStayOneShortLine) {
   const std::string big(10'000'000, 'q');
   EXPECT_EQ(parse_json("[\"" + big + "\"]", "file")[0].get_ref<const std::string&>().size(), big.size());
   for (const std::string& text :
-       {"[\"" + big, "{\"" + big + "\": 1, \"" + big + "\": 2}", "{\"a\": " + big, "[\"a\nb\x07\"]" + big}) {
+       {"[\"" + big, "{\"" + big + "\": 1, \"" + big + "\": 2}", "{\"a\": " + big, "[\"a\nb\x07\"]" + big,
+        std::string(R"({"a\n\u0007": 1, "a\n\u0007": 2})")}) {
     const std::string found = parse_complaint(text);
     EXPECT_FALSE(found.empty());
     EXPECT_LT(found.size(), 1100u);  // 400 of place, 600 of message, and the marks between

@@ -142,7 +142,9 @@ for file in scene.json text.exr empty folder folder.exr /dev/zero /dev/null; do
   refused 2 "$file: is not an OpenEXR file" "$info" "$file"
 done
 head -c 20000 a.exr >short.exr
-for option in --json --verify; do refused 2 "short.exr: damaged" "$info" short.exr $option; done
+refused 2 "short.exr: damaged" "$info" short.exr --json
+run 1 "$info" short.exr --verify
+{ [ "$(wc -l <out)" -eq 1 ] && grep -q 'short.exr: damaged' out; } || fault "--verify names a damaged file as one fault"
 silent "$info" a.exr --verify --quiet
 python3 - <<'PYTHON'
 import json, struct

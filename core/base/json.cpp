@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -13,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kDeepest = 64;
+constexpr std::size_t kDeepest = 64;
 
 std::string escape_pointer(std::string_view key) {
   std::string out;
@@ -33,9 +34,8 @@ class DuplicateGuard {
  public:
   explicit DuplicateGuard(std::string place) : place_(std::move(place)) {}
 
-  bool operator()(int depth, json::parse_event_t event, json& parsed) {
+  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
     using Event = json::parse_event_t;
-    if (depth > kDeepest) throw InputError(place_ + ": " + pointer(), "nested deeper than 64 levels");
     switch (event) {
       case Event::object_start:
         open(true);
@@ -57,6 +57,12 @@ class DuplicateGuard {
     return true;
   }
 
+  /// Of the value that is read next.
+  std::string next() {
+    if (!levels_.empty() && !levels_.back().is_object) ++levels_.back().index;
+    return pointer();
+  }
+
  private:
   struct Level {
     bool is_object;
@@ -67,6 +73,8 @@ class DuplicateGuard {
 
   void open(bool is_object) {
     if (!levels_.empty() && !levels_.back().is_object) ++levels_.back().index;
+    if (levels_.size() == kDeepest)
+      throw InputError(place_ + ": " + pointer(), "nested deeper than 64 levels");
     levels_.push_back({is_object, -1, {}, {}});
   }
   void key(const std::string& name) {
@@ -105,13 +113,17 @@ std::string tidy(std::string_view what) {
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& place) {
+  DuplicateGuard guard(place);
+  const std::size_t nul = text.find('\0');  // the parser would take it for the end
+  if (nul != std::string_view::npos)
+    throw InputError(place + ": " + line_and_column(text, nul + 1), "not valid JSON: a zero byte");
   try {
-    return json::parse(text, DuplicateGuard(place));
+    return json::parse(text, std::ref(guard));
   } catch (const json::parse_error& error) {
     throw InputError(place + ": " + line_and_column(text, error.byte),
                      "not valid JSON: " + tidy(error.what()));
   } catch (const json::out_of_range&) {
-    throw InputError(place, "not valid JSON: a number is too large for a double");
+    throw InputError(place + ": " + guard.next(), "not valid JSON: a number is too large for a double");
   }
 }
 
@@ -160,7 +172,7 @@ const json& JsonObject::at(std::string_view key) {
 }
 
 JsonObject JsonObject::object(std::string_view key) {
-  return {at(key), place_, pointer_ + "/" + std::string(key)};
+  return {at(key), place_, pointer_ + "/" + escape_pointer(key)};
 }
 
 std::vector<JsonObject> JsonObject::objects(std::string_view key) {
@@ -168,7 +180,7 @@ std::vector<JsonObject> JsonObject::objects(std::string_view key) {
   if (!list.is_array()) refuse(key, std::string("expected a list […], found ") + list.type_name());
   std::vector<JsonObject> out;
   for (std::size_t i = 0; i < list.size(); ++i)
-    out.emplace_back(list[i], place_, pointer_ + "/" + std::string(key) + "/" + std::to_string(i));
+    out.emplace_back(list[i], place_, pointer_ + "/" + escape_pointer(key) + "/" + std::to_string(i));
   return out;
 }
 
@@ -197,6 +209,18 @@ std::string JsonObject::word(std::string_view key, const std::vector<std::string
                              std::string fallback) {
   known_.emplace(key);
   return has(key) ? word(key, allowed) : fallback;
+}
+
+std::string JsonObject::name(std::string_view key, std::set<std::string>& taken) {
+  const std::string name = text(key);
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  bool fits = !name.empty() && name.size() <= 32 && letter(name[0]);
+  for (const char c : name) fits = fits && (letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-');
+  if (!fits)
+    refuse(key,
+           "expected a letter and up to 31 letters, digits, '_' or '-', found '" + printable(name, 40) + "'");
+  if (!taken.insert(name).second) refuse(key, "'" + name + "' names two objects; expected different names");
+  return name;
 }
 
 bool JsonObject::boolean(std::string_view key, bool fallback) {

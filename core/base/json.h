@@ -37,6 +37,8 @@ class JsonObject {
   /// One of the allowed words; the complaint lists them.
   std::string word(std::string_view key, const std::vector<std::string>& allowed);
   std::string word(std::string_view key, const std::vector<std::string>& allowed, std::string fallback);
+  /// A name [A-Za-z][A-Za-z0-9_-]{0,31} that is not yet `taken`, and is from now on.
+  std::string name(std::string_view key, std::set<std::string>& taken);
   bool boolean(std::string_view key, bool fallback);
   /// A finite number within [least, most].
   double number(std::string_view key, double least = -kBig, double most = kBig);

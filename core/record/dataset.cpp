@@ -1,9 +1,12 @@
 #include "core/record/dataset.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/base/json.h"
 #include "core/base/sha256.h"
 
 namespace nullcone {
@@ -17,6 +20,8 @@ void check_columns(const Dataset& dataset, std::vector<std::string>& faults) {
   const std::size_t pixels = dataset.pixels(), count = dataset.hits.count();
   if (dataset.hits.offset.size() != pixels + 1)
     faults.push_back("hits: the number of pixels is not width x height");
+  if (!std::is_sorted(dataset.hits.offset.begin(), dataset.hits.offset.end()))
+    faults.push_back("hits: the counts a pixel are not counts");
   for_each_channel(dataset.hits, kHitChannels, [&](const auto& channel, const auto& column) {
     if (column.size() != count)
       faults.push_back("hits: channel " + std::string(channel.name) + " has a wrong length");
@@ -42,6 +47,17 @@ void check_values(const Dataset& dataset, std::vector<std::string>& faults) {
       }
 }
 
+void check_scene(const Manifest& manifest, std::vector<std::string>& faults) {
+  try {
+    nlohmann::json scene = parse_json(manifest.scene, "manifest: scene");
+    scene.erase("look");
+    if (sha256(canonical_json(scene)) != manifest.scene_sha256)
+      faults.push_back("manifest: SHA-256 of the scene differs from the one beside it");
+  } catch (const std::exception& error) {
+    faults.emplace_back(error.what());
+  }
+}
+
 }  // namespace
 
 std::string payload_sha256(const Hits& hits) {
@@ -62,6 +78,7 @@ std::vector<std::string> verify(const Dataset& dataset) {
   check_columns(dataset, faults);
   if (!faults.empty()) return faults;
   check_values(dataset, faults);
+  check_scene(dataset.manifest, faults);
   if (payload_sha256(dataset.hits) != dataset.manifest.hits_sha256)
     faults.push_back("hits: SHA-256 differs from the one in the header");
   if (payload_sha256(dataset.rays) != dataset.manifest.rays_sha256)

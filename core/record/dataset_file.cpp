@@ -12,11 +12,13 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 
@@ -132,7 +134,13 @@ void write_rays(Imf::MultiPartOutputFile& file, const Dataset& dataset) {
   part.writePixels(dataset.manifest.height);
 }
 
-void read_hits(Imf::MultiPartInputFile& file, int part_number, Dataset& dataset) {
+/// A damaged file must not ask for memory far beyond its own size: deflate shrinks 1032 to 1 at most.
+void check_length(const std::string& path, std::uint64_t stored_bytes) {
+  if (stored_bytes / 1100 > std::filesystem::file_size(path))
+    throw InputError(path, "damaged or incomplete: too short for its number of pixels and crossings");
+}
+
+void read_hits(Imf::MultiPartInputFile& file, int part_number, const std::string& path, Dataset& dataset) {
   Imf::DeepScanLineInputPart part(file, part_number);
   Hits& hits = dataset.hits;
   DeepPointers deep(hits, dataset.manifest.width, dataset.pixels());
@@ -141,6 +149,7 @@ void read_hits(Imf::MultiPartInputFile& file, int part_number, Dataset& dataset)
   part.readPixelSampleCounts(0, last);
   hits.offset.assign(dataset.pixels() + 1, 0);
   for (std::size_t i = 0; i < dataset.pixels(); ++i) hits.offset[i + 1] = hits.offset[i] + deep.counts[i];
+  check_length(path, hits.count() * std::tuple_size_v<decltype(kHitChannels)> * sizeof(float));
   for_each_channel(hits, kHitChannels, [&](const auto&, auto& column) { column.resize(hits.count()); });
   deep.aim(hits);
   part.readPixels(0, last);
@@ -211,13 +220,19 @@ auto with_file(const std::string& path, Read&& read) {
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview) {
   const std::string beside = path + ".part-" + std::to_string(::getpid());
   try {
+    // Our own stream: OpenEXR's destructors swallow what goes wrong when the last bytes are written.
+    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+    if (!out) throw WorkError(path, "cannot write there");
     {
       const auto headers = make_headers(dataset);
-      Imf::MultiPartOutputFile file(beside.c_str(), headers.data(), static_cast<int>(headers.size()));
+      Imf::StdOFStream stream(out, beside.c_str());
+      Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
       write_preview(file, dataset, preview);
       write_hits(file, dataset);
       write_rays(file, dataset);
     }
+    out.close();
+    if (!out) throw WorkError(path, "cannot write all of it (is the disk full?)");
     if (std::rename(beside.c_str(), path.c_str()) != 0)
       throw WorkError(path, "cannot rename the finished file");
   } catch (const WorkError&) {
@@ -236,7 +251,8 @@ Dataset read_dataset(const std::string& path) {
     const int hits = find_part(file, "hits", path), rays = find_part(file, "rays", path);
     check_part(file.header(hits), dataset.hits, kHitChannels, dataset.manifest, path);
     check_part(file.header(rays), dataset.rays, kRayChannels, dataset.manifest, path);
-    read_hits(file, hits, dataset);
+    check_length(path, dataset.pixels() * sizeof(unsigned));  // the counts alone
+    read_hits(file, hits, path, dataset);
     read_rays(file, rays, dataset);
     return dataset;
   });

@@ -19,7 +19,7 @@ struct Hits {
   std::vector<std::uint32_t> id, order;
   std::vector<float> u, v, shift, t, tau, mu;
 
-  std::size_t count() const { return offset.back(); }
+  std::size_t count() const { return offset.empty() ? 0 : offset.back(); }
 };
 
 /// One entry a pixel.

@@ -45,8 +45,9 @@ Manifest manifest_from_json(const std::string& text, const std::string& place) {
   m.scene = root.text("scene");
   m.scene_sha256 = root.text("scene_sha256");
   m.metric = root.text("metric");
+  std::set<std::string> names;
   for (JsonObject& object : root.objects("objects")) {
-    m.objects.push_back({object.text("name"), object.number("tau_origin")});
+    m.objects.push_back({object.name("name", names), object.number("tau_origin")});
     object.finish();
   }
   m.version = root.text("version");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
@@ -173,21 +174,9 @@ Placing read_placing(JsonObject placing) {
   return out;
 }
 
-void check_name(const JsonObject& object, const std::string& name, std::set<std::string>& taken) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  bool fits = !name.empty() && name.size() <= 32 && letter(name[0]);
-  for (const char c : name) fits = fits && (letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-');
-  if (!fits)
-    object.refuse("name", "expected a letter and up to 31 letters, digits, '_' or '-', found '" +
-                              printable(name, 40) + "'");
-  if (!taken.insert(name).second)
-    object.refuse("name", "'" + name + "' names two objects; expected different names");
-}
-
 Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken) {
   Object out;
-  out.name = object.text("name");
-  check_name(object, out.name, taken);
+  out.name = object.name("name", taken);
   out.shape = read_shape(object.object("shape"), metric);
   if (out.shape.type != ShapeType::sky) out.placing = read_placing(object.object("placing"));
   object.finish();
@@ -206,9 +195,12 @@ Scene read_scene(const std::string& text, const std::string& place,
   scene.camera = read_camera(root.object("camera"));
   if (root.has("max_lookback")) scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
   std::set<std::string> names;
+  bool sky = false;
   for (JsonObject& object : root.objects("objects")) {
     if (scene.objects.size() == 1000) root.refuse("objects", "expected at most 1000 objects");
     scene.objects.push_back(read_object(object, metric, names));
+    if (scene.objects.back().shape.type != ShapeType::sky) continue;
+    if (std::exchange(sky, true)) object.refuse("shape/type", "is a second sky; expected one at most");
   }
   if (scene.objects.empty()) root.refuse("objects", "is empty; expected at least one object to look at");
   if (root.has("look")) root.object("look");  // its contents are post-rendering's affair

@@ -22,6 +22,9 @@ struct Sphere {
     return from_inside ? -f : f;
   }
 
+  /// Whether an observer at X could not see out (or, for a dome, not in).
+  bool hides(const Vec3<double>& X) const { return value(X) <= 0; }
+
   /// A step that cannot pass the surface: F = |X|^2 - R^2 has F'' = 2|X'|^2 + 2 X.X'', bounded below by 2 c.
   template <class S>
   S safe_step(const Sight<S>& ray, const S&) const {
@@ -61,6 +64,12 @@ struct Quad {
   template <class S>
   S value(const Vec3<S>& X) const {
     return X[2];
+  }
+
+  /// Whether an observer at X stands in the rectangle itself.
+  bool hides(const Vec3<double>& X) const {
+    return std::fabs(X[0]) <= half_x && std::fabs(X[1]) <= half_y &&
+           std::fabs(X[2]) <= 1e-12 * (half_x + half_y);
   }
 
   /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest
