@@ -1,0 +1,96 @@
+// Small datasets, a folder that vanishes, and what reading damaged bytes complains about.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/base/error.h"
+#include "core/base/sha256.h"
+#include "core/record/dataset_file.h"
+
+namespace nullcone::test {
+
+namespace fs = std::filesystem;
+
+inline void rehash(Dataset& dataset) {
+  dataset.manifest.hits_sha256 = payload_sha256(dataset.hits);
+  dataset.manifest.rays_sha256 = payload_sha256(dataset.rays);
+}
+
+/// 6 x 4 pixels with 0 to 3 crossings each (or none), and values that only exact storage keeps.
+inline Dataset sample(bool with_hits = true) {
+  Dataset out;
+  Manifest& m = out.manifest;
+  m.width = 6, m.height = 4;
+  m.scene = R"({"metric":{"name":"minkowski"}})";
+  m.scene_sha256 = sha256(m.scene);
+  m.metric = "minkowski";
+  m.objects = {{"earth", 0.1}, {"moon", -1e15}};
+  m.version = "test 1", m.isa = "sse2", m.host = std::string(64, 'h'), m.core_seconds = 0.25;
+  const float odd[] = {1e-45F, -0.0F, 3.4e38F, 0.1F, -INFINITY, NAN};
+  for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
+    for (std::uint32_t k = 0; with_hits && k < pixel * 7 % 4; ++k) {
+      for_each_channel(out.hits, kHitChannels, [&](const auto& channel, auto& column) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(column)>, std::vector<float>>)
+          column.push_back(odd[(pixel + k + channel.name.size()) % 6]);
+        else
+          column.push_back(channel.name == "id" ? 1 + k % 2 : 0xffffffffU - pixel);
+      });
+      out.hits.Z.back() = k < 2 ? static_cast<float>(k) + 0.1F : INFINITY;
+    }
+    out.hits.offset.push_back(out.hits.Z.size());
+    out.rays.status.push_back(pixel % 7), out.rays.steps.push_back(0xffffff00U + pixel);
+    out.rays.error.push_back(odd[pixel % 6]), out.rays.drift.push_back(1e-7F);
+  }
+  rehash(out);
+  return out;
+}
+
+inline void write(const std::string& path, const Dataset& dataset) {
+  write_dataset(path, dataset, Preview(4 * dataset.pixels(), 0.0F));
+}
+
+inline std::string slurp(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class DatasetFile : public ::testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("nullcone_dataset_" + std::to_string(::getpid()));
+  std::string path = folder / "a.exr";
+
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+
+  std::vector<std::string> listing() const {
+    std::vector<std::string> out;
+    for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename());
+    return out;
+  }
+  std::string whole_file() {
+    write(path, sample());
+    return slurp(path);
+  }
+  /// What reading these bytes complains about; empty if they give a dataset (which is then judged).
+  std::string complaint(const std::string& bytes) {
+    const std::string place = folder / "b.exr";
+    std::ofstream(place, std::ios::binary) << bytes;
+    return complaint_of(place);
+  }
+  static std::string complaint_of(const std::string& place) {
+    try {
+      verify(read_dataset(place));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+}  // namespace nullcone::test
