@@ -83,7 +83,8 @@ struct Goedel {
 
   /// Number of caustics passed after the affine length `lambda` >= 0 of a null ray with local frequency 1:
   /// zeros of det D (eq. 5.1): psi = k pi, and one more in each (k pi + pi/2, k pi + pi).
-  unsigned caustics(double lambda, double n_z) const;
+  template <class S>
+  S caustics(const S& lambda, const S& n_z) const;
 
   /// Constants of motion of the geodesic with chart tangent k at x: E, L, p_z and the charges of K4 and K5.
   template <class S>
@@ -180,14 +181,14 @@ Complex<S> Goedel::turn(const Vec4<S>& P, const Vec4<S>& x) const {
   return (S(1.0) / norm2(conj_ph)) * (conj_ph * conj_ph);
 }
 
-inline unsigned Goedel::caustics(double lambda, double n_z) const {
+template <class S>
+S Goedel::caustics(const S& lambda, const S& n_z) const {
   constexpr double kPi = 3.14159265358979323846;
-  const double psi = std::sqrt(1 + n_z * n_z) * lambda / (2 * a);
-  const double lobe = std::floor(psi / kPi);
-  const auto [s, c] = sincos(psi - lobe * kPi);
-  const double bracket =
-      (1 - n_z * n_z) * psi * c + 2 * n_z * n_z * s;  // positive at the start of every lobe
-  return 2 * static_cast<unsigned>(lobe) + (bracket < 0 ? 1 : 0);
+  const S n2 = n_z * n_z, psi = sqrt(S(1.0) + n2) * lambda * S(0.5 / a);
+  const S lobe = floor(S(1 / kPi) * psi);
+  const auto [s, c] = sincos(psi - lobe * S(kPi));
+  const S bracket = (S(1.0) - n2) * psi * c + S(2.0) * n2 * s;  // positive at the start of every lobe
+  return S(2.0) * lobe + select(bracket < S(0.0), S(1.0), S(0.0));
 }
 
 template <class S>

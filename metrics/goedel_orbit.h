@@ -35,8 +35,9 @@ struct GoedelOrbit {
   /// About the largest bounding radius that would fit.
   double largest_ball() const { return ball / farthest * std::fmin(0.9 / tilt, 2 * metric.a); }
   /// At which the object is nearest to an event in its neighbourhood, roughly.
-  double proper_time(const Vec4<double>& event) const {
-    return (metric.to_origin(centre, event)[0] - t_c) / dt_dtau;
+  template <class S>
+  S proper_time(const Vec4<S>& event) const {
+    return (metric.to_origin(convert<S>(centre), event)[0] - S(t_c)) * S(1 / dt_dtau);
   }
   double tilt = 0;  ///< sqrt2 gamma^2 beta / a
 

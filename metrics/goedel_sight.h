@@ -1,6 +1,8 @@
-// Bounds for the search of crossings in the Gödel universe: how long a ray surely stays clear of an object,
-// and how fast and how crookedly it can move as seen from one.
+// Bounds for the search of crossings in the Gödel universe: how long a ray surely stays clear of an object at
+// rest, and how fast and how crookedly it can move as seen from one.
 #pragma once
+
+#include <numbers>
 
 #include "core/trace/sight.h"
 #include "metrics/goedel.h"
@@ -14,34 +16,71 @@ S asinh_of(const Complex<S>& q) {
   return log(u + sqrt(S(1.0) + u2));
 }
 
-/// Bounds for objects at rest in the chart (see at_rest() below), all from the geodesic equation (1.4):
-/// in-plane chart speeds lie between s/p and s p; |X''| <= s (sqrt2 p + 3/2 s u)/a for local frequency 1.
+/// When a ray is near the axis of its chart. In the plane every geodesic is a circle of H^2, and
+/// |q|^2 = C - A cos 2(psi - psi_m): so the distance from the axis is below a given one in one window of
+/// every period pi of psi, or never. In z the ray moves uniformly.
 template <class S>
-void bound_at_rest(const Goedel::Path<S>& path, const PathPoint<S>& P, double ball, bool centred,
-                   Sight<S>& sight) {
+struct GoedelGuard {
+  S psi_m, half_width, psi_rate;  ///< half_width < 0: never
+  S z0, z_rate, ball;
+
+  GoedelGuard(const Goedel::Path<S>& path, double bounding_radius) {
+    const double a = path.metric->a;
+    // Q = q0 cos psi + w sin psi (PHYSICS 2.2), so |Q|^2 = C + D cos 2 psi + E sin 2 psi.
+    const Complex<S> scaled = S(1 / Goedel::kSqrt2) * (path.p0 * path.nu);
+    const Complex<S> w = (S(1.0) / path.kappa) * Complex<S>{scaled.re + path.q0.im, scaled.im - path.q0.re};
+    const Complex<S> product = conj(path.q0) * w;
+    const S q2 = norm2(path.q0), w2 = norm2(w);
+    const S C = S(0.5) * (q2 + w2), D = S(0.5) * (q2 - w2), A = sqrt(D * D + product.re * product.re);
+    // Least |Q|^2 without cancellation: C^2 - A^2 = Im(conj(q0) w)^2. A little room covers rounding.
+    const S least = product.im * product.im / (C + A + S(1e-300));
+    ball = S(bounding_radius * (1 + 1e-12)) + S(1e-13 * a) * (S(1.0) + q2);
+    const S u = S(0.5 / a) * ball, room = u * u - least;
+    const S sine = sqrt(max(room, S(0.0)) / max(S(2.0) * A, S(1e-300)));
+    const S below_1 = min(sine, S(1.0));
+    const S angle = atan2(below_1, sqrt((S(1.0) - below_1) * (S(1.0) + below_1)));
+    half_width = select(room > S(0.0), angle, S(-1.0));
+    psi_m = S(0.5) * (atan2(product.re, D) + S(std::numbers::pi));
+    psi_rate = S(1 / (Goedel::kSqrt2 * a)) * path.kappa * abs(path.k0);
+    // psi runs backwards along rays into the past.
+    psi_m = select(path.k0 < S(0.0), -psi_m, psi_m);
+    z0 = path.z0;
+    z_rate = path.n_z * path.k0;
+  }
+
+  /// Affine length for which the ray surely stays farther than `ball` from the origin of its chart; 0 within
+  /// the windows.
+  S clearance(const S& lambda) const {
+    constexpr double kPi = std::numbers::pi;
+    const S psi = psi_rate * lambda - psi_m, x = psi - S(kPi) * floor(S(1 / kPi) * psi + S(0.5));
+    const S to_window =
+        select(x < -half_width, -half_width - x, select(x > half_width, S(kPi) - half_width - x, S(0.0)));
+    const S by_plane = select(half_width < S(0.0), S(kFar), to_window / psi_rate);
+    const S z = z0 + z_rate * lambda, approach = select(z < S(0.0), z_rate, -z_rate), gap = abs(z) - ball;
+    const S by_z = select(gap > S(0.0), select(approach > S(0.0), gap / approach, S(kFar)), S(0.0));
+    return max(by_plane, by_z);
+  }
+};
+
+template <class S>
+GoedelGuard<S> make_guard(const Goedel::Path<S>& path, double ball) {
+  return {path, ball};
+}
+
+/// Bounds for objects at rest in the chart for the next `sight.valid` of lambda, all from the geodesic
+/// equation (1.4): in-plane chart speeds lie between s/p and s p; |X''| <= s (sqrt2 p + 3/2 s u)/a for local
+/// frequency 1.
+template <class S>
+NULLCONE_INLINE void bound_at_rest(const Goedel::Path<S>& path, const PathPoint<S>& P, Sight<S>& sight) {
   const double a = path.metric->a;
   const S frequency = abs(path.k0), s = sqrt(norm2(path.nu));
-  const Complex<S> q = path.metric->to_q(P.event);
-  const S u = sqrt(norm2(q)), p = sqrt(S(1.0) + u * u);
+  const S u = sqrt(norm2(path.metric->to_q(P.event))), p = sqrt(S(1.0) + u * u);
   // Within the next a/2 of local length the ray stays within u_far: sinh(rho + 1/4).
   const S u_far = S(1.03142) * u + S(0.25262) * p, p_far = sqrt(S(1.0) + u_far * u_far);
   sight.valid = S(0.5 * a) / frequency;
   sight.slope_max = frequency * p_far;
   sight.slope_min = frequency / p_far;
   sight.bend_max = frequency * frequency * s * (S(Goedel::kSqrt2) * p_far + S(1.5) * s * u_far) * S(1 / a);
-
-  // In z the ray moves uniformly; in the plane at most with local speed 1, so distances in H^2 x R are safe
-  // steps.
-  const S distance_z = abs(sight.X[2]);
-  const S approach = select(sight.X[2] < S(0.0), sight.slope[2], -sight.slope[2]);
-  const S gap_z = distance_z - S(ball);
-  const S by_z = select(gap_z > S(0.0), select(approach > S(0.0), gap_z / approach, S(kFar)), S(0.0));
-  const S hyperbolic = S(2 * a) * log(u + p);
-  const S distance = centred ? sqrt(hyperbolic * hyperbolic + distance_z * distance_z) : norm(sight.X);
-  const S by_distance =
-      centred ? (distance - S(ball)) / frequency : min((distance - S(ball)) / sight.slope_max, sight.valid);
-  const auto far = (distance > S(1.5 * ball)) | (gap_z > S(0.5 * ball));
-  sight.clearance = select(far, max(max(by_z, by_distance), S(0.0)), S(0.0));
 }
 
 NULLCONE_KERNEL_END

@@ -119,8 +119,9 @@ class SceneTracer final : public Tracer {
       unfit.reason = "is too large: parts of it would have to move faster than light";
       return false;
     }
-    const Meeting here = meet(placed.body, placed.shape, observation_, placed.body.first_guess(observation_));
-    if (placed.shape.hides(here.X)) {
+    const double tau = local_time(placed.body, observation_, placed.body.first_guess(observation_));
+    const Vec3<double> here = placed.body.local(observation_, tau).second;
+    if (placed.shape.hides(here)) {
       unfit.reason = shape.type == ShapeType::quad ? "holds the observer in its surface"
                      : shape.dome
                          ? "is a dome, but the observer stands outside it"
@@ -130,26 +131,45 @@ class SceneTracer final : public Tracer {
     return true;
   }
 
-  std::size_t write(const BandRays& rays, const BandRoom& room) const {
+  /// Records of all rays that met object `number`, each at its ray's place in `records`.
+  void record_object(std::uint32_t number, BandRays& rays, HitRecord* records) const {
+    std::size_t listed = 0;
+    for (std::size_t i = 0; i < rays.count; ++i)
+      if (rays.nearest[i] == number) rays.list[listed++] = static_cast<std::uint32_t>(i);
+    const double origin = origins_[number - 1];
+    for (std::size_t i = 0; i < listed; i += Lanes<Pack>::count) {
+      const Group<Pack> group(rays.list.get(), i, listed);
+      const Recorded<Pack> r = std::visit(
+          [&](const auto& placed) {
+            return record(metric_, placed, observation_, group.load_k(rays), group.load(rays.limit));
+          },
+          objects_[number - 1]);
+      for (std::size_t lane = 0; lane < group.filled; ++lane)
+        records[group.ray[lane]] = {static_cast<std::uint32_t>(group.ray[lane]),
+                                    number,
+                                    static_cast<std::uint32_t>(r.order.get(lane)),
+                                    r.Z.get(lane),
+                                    r.u.get(lane),
+                                    r.v.get(lane),
+                                    r.shift.get(lane),
+                                    r.t.get(lane),
+                                    r.tau.get(lane) - origin,
+                                    r.mu.get(lane)};
+    }
+  }
+
+  std::size_t write(BandRays& rays, const BandRoom& room) const {
+    const std::unique_ptr<HitRecord[]> records(new HitRecord[rays.count]);
+    for (std::uint32_t number = 1; number <= count_; ++number)
+      if (number != sky_) record_object(number, rays, records.get());
     std::size_t hits = 0;
     for (std::size_t i = 0; i < rays.count; ++i) {
-      const Vec4<double> past = {{rays.k[0][i], rays.k[1][i], rays.k[2][i], rays.k[3][i]}};
-      const std::uint32_t number = rays.nearest[i];
       Status status = lookback_ < 1e300 ? Status::lookback_reached : Status::sky;
-      if (number != 0) {
-        status = Status::hit;
-        HitRecord hit = std::visit(
-            [&](const auto& placed) {
-              return record(metric_, placed, observation_, past, rays.limit[i], origins_[number - 1]);
-            },
-            objects_[number - 1]);
-        hit.pixel = static_cast<std::uint32_t>(i);
-        hit.id = number;
-        if (!finite(hit))
-          status = Status::not_finite;
-        else
-          room.hits[hits++] = hit;
+      if (rays.nearest[i] != 0) {
+        status = finite(records[i]) ? Status::hit : Status::not_finite;
+        if (status == Status::hit) room.hits[hits++] = records[i];
       } else if (status == Status::sky && sky_ != 0) {
+        const Vec4<double> past = {{rays.k[0][i], rays.k[1][i], rays.k[2][i], rays.k[3][i]}};
         room.hits[hits++] = sky_record(past, static_cast<std::uint32_t>(i));
       }
       if (rays.doubtful[i]) status = Status::step_limit;
@@ -166,8 +186,8 @@ class SceneTracer final : public Tracer {
   /// The sky at infinity, by direction in the static frame: infinitely far and long ago.
   HitRecord sky_record(const Vec4<double>& past, std::uint32_t pixel) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const auto [u, v] = Sphere::uv(spatial(past));
-    return {pixel, sky_, 0, kInfinity, u, v, -1 / past[0], -kInfinity, -kInfinity, 1};
+    const auto uv = Sphere::uv(spatial(past));
+    return {pixel, sky_, 0, kInfinity, uv[0], uv[1], -1 / past[0], -kInfinity, -kInfinity, 1};
   }
 
   M metric_;

@@ -59,7 +59,10 @@ struct Minkowski {
   }
 
   /// Number of caustics passed after the affine length `lambda` with local frequency 1.
-  unsigned caustics(double, double) const { return 0; }
+  template <class S>
+  S caustics(const S&, const S&) const {
+    return S(0.0);
+  }
 
   /// Constants of motion of the geodesic with chart tangent k at x: energy and the momenta.
   template <class S>

@@ -8,12 +8,31 @@
 
 NULLCONE_KERNEL_BEGIN
 
+/// When a straight ray is within a ball about the origin of its chart.
 template <class S>
-void bound_at_rest(const Minkowski::Path<S>& path, const PathPoint<S>&, double, bool, Sight<S>& sight) {
+struct MinkowskiGuard {
+  S entry, exit;  ///< in lambda; an empty interval: never
+
+  MinkowskiGuard(const Minkowski::Path<S>& path, double bounding_radius) {
+    const Vec3<S> X = spatial(path.start), k = spatial(path.k), moment = cross(X, k);
+    const S ball = S(bounding_radius * (1 + 1e-12)) + S(4e-15) * norm(X), k2 = dot(k, k);
+    const S room = ball * ball * k2 - dot(moment, moment), half = sqrt(max(room, S(0.0)));
+    const S along = -dot(X, k);
+    entry = select(room > S(0.0), (along - half) / k2, S(kFar));
+    exit = select(room > S(0.0), (along + half) / k2, -S(kFar));
+  }
+  S clearance(const S& lambda) const { return select(lambda > exit, S(kFar), max(entry - lambda, S(0.0))); }
+};
+template <class S>
+MinkowskiGuard<S> make_guard(const Minkowski::Path<S>& path, double ball) {
+  return {path, ball};
+}
+
+template <class S>
+NULLCONE_INLINE void bound_at_rest(const Minkowski::Path<S>& path, const PathPoint<S>&, Sight<S>& sight) {
   sight.slope_min = sight.slope_max = abs(path.k[0]);
   sight.bend_max = S(0.0);
   sight.valid = S(kFar);
-  sight.clearance = S(0.0);
 }
 
 /// A uniformly moving object: in its frame the ray is straight, and moves at the frequency k.u.
@@ -23,7 +42,10 @@ struct MinkowskiOrbit {
 
   bool fits() const { return true; }
   double largest_ball() const { return farthest; }
-  double proper_time(const Vec4<double>& event) const { return boost(u, event - start)[0]; }
+  template <class S>
+  S proper_time(const Vec4<S>& event) const {
+    return boost(convert<S>(u), event - convert<S>(start))[0];
+  }
 
   template <class S>
   struct Ray {

@@ -10,6 +10,7 @@
 #include "metrics/minkowski_kernel.h"
 #include "tests/random_rays.h"
 #include "tests/reference_cases.h"
+#include "tests/sanitized.h"
 
 namespace nullcone::test {
 namespace {
@@ -18,12 +19,9 @@ using namespace nullcone::host;
 
 /// How many of `full` cases to run: a fraction under sanitizers, a multiple in scripts/soak.sh.
 int rays(int full) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return full / 50;
-#else
+  if (kSanitized) return full / 50;
   const char* soak = std::getenv("NULLCONE_SOAK");
   return full * (soak ? std::max(1, std::atoi(soak)) : 1);
-#endif
 }
 
 constexpr Matrix3<double> kAxes = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
@@ -53,7 +51,7 @@ struct Tally {
 
   /// `graze` is the least depth over R that must not be missed; `depth_at` tells how deep a claimed crossing
   /// lies.
-  void compare(double expected, const Crossing<double>& found, double tolerance,
+  void compare(double expected, const Search<double>& found, double tolerance,
                const std::function<double(double)>& depth, double radius) {
     ++rays;
     hits += expected >= 0;

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "tests/dataset_fixture.h"
+#include "tests/sanitized.h"
 
 namespace nullcone::test {
 namespace {
@@ -32,10 +33,8 @@ struct MemoryLimit {
   rlimit before{};
   MemoryLimit() {
     getrlimit(RLIMIT_AS, &before);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     const rlimit now = {kRoom, before.rlim_max};
-    setrlimit(RLIMIT_AS, &now);
-#endif
+    if (!kSanitized) setrlimit(RLIMIT_AS, &now);
   }
   ~MemoryLimit() { setrlimit(RLIMIT_AS, &before); }
 };
@@ -48,11 +47,7 @@ void expect_modest(const std::string& found, const std::string& what) {
 TEST_F(DatasetFile, EveryByteMayBeWrong) {
   const MemoryLimit limit;
   std::string bytes = whole_file();
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  const std::size_t stride = 11;
-#else
-  const std::size_t stride = 1;
-#endif
+  constexpr std::size_t stride = kSanitized ? 11 : 1;
   for (std::size_t i = 0; i < bytes.size(); i += stride)
     for (const char wrong : {'\x03', '\xff', '\x00'}) {
       const char right = std::exchange(bytes[i], wrong);

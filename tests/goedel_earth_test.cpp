@@ -6,6 +6,7 @@
 
 #include "core/base/json.h"
 #include "tests/reference_cases.h"
+#include "tests/sanitized.h"
 #include "tests/traced.h"
 
 namespace nullcone::test {
@@ -76,7 +77,11 @@ struct EarthPicture {
 };
 
 const Traced& traced_earth() {
-  static const Traced traced = trace_text(earth_scene().dump());
+  static const Traced traced = [] {
+    json scene = earth_scene();
+    if (kSanitized) scene["camera"]["resolution"] = {660, 300};
+    return trace_text(scene.dump());
+  }();
   return traced;
 }
 
@@ -94,11 +99,11 @@ TEST(GoedelEarth, HasTheThreeImagesOfTheTable) {
   };
   for (const Row& row : rows) {
     const Image& image = row.image;
-    ASSERT_GT(image.count, 500);
+    ASSERT_GT(image.count, 100);
     // The table is rounded to its last digit; a pixel is 0.083 degrees, half of it missing at either side.
     EXPECT_NEAR(image.azimuth_from, row.azimuth[0], 0.6);
     EXPECT_NEAR(image.azimuth_to, row.azimuth[1], 0.6);
-    EXPECT_NEAR(image.azimuth_to - image.azimuth_from, row.size[0], 0.17);
+    EXPECT_NEAR(image.azimuth_to - image.azimuth_from, row.size[0], kSanitized ? 0.7 : 0.17);
     EXPECT_NEAR(image.elevation_to - image.elevation_from, row.size[1], 0.17);
     EXPECT_NEAR(image.g(), row.g, 0.001);
     EXPECT_NEAR(image.g_from, row.g_range[0], 0.006);
@@ -136,7 +141,7 @@ TEST(GoedelEarth, SquaresStandStillWhereTheyShould) {
       EXPECT_NEAR(h.shift, 1, 1e-12);
       EXPECT_GT(h.mu, 0.99);  // they face the observer
     });
-    ASSERT_GT(count, 200);
+    ASSERT_GT(count, 50);
     EXPECT_NEAR(azimuth / count, id == 2 ? 67 : 81, 0.5);
     EXPECT_NEAR(elevation / count, -10.8, 0.2);
   }
@@ -145,7 +150,8 @@ TEST(GoedelEarth, SquaresStandStillWhereTheyShould) {
 TEST(GoedelEarth, EveryRayIsAccountedFor) {
   const Traced& traced = traced_earth();
   EXPECT_EQ(traced.rays_with(Status::hit), traced.hits());
-  EXPECT_EQ(traced.rays_with(Status::hit) + traced.rays_with(Status::lookback_reached), 2640U * 300U);
+  EXPECT_EQ(traced.rays_with(Status::hit) + traced.rays_with(Status::lookback_reached),
+            static_cast<std::size_t>(traced.scene.camera.width * traced.scene.camera.height));
 }
 
 /// Connected regions of hits whose lambda changes little from pixel to pixel.
@@ -185,7 +191,7 @@ TEST(GoedelEarth, TenTimesTheLookbackShowsMoreThanTwentyImages) {
   json scene = earth_scene();
   scene["max_lookback"] = 100;
   scene["camera"]["fov_deg"] = {360, 6};
-  scene["camera"]["resolution"] = {4320, 288};
+  scene["camera"]["resolution"] = {kSanitized ? 1080 : 4320, 288};
   EXPECT_GT(count_images(trace_text(scene.dump())), 20);
 }
 

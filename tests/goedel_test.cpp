@@ -76,9 +76,9 @@ TEST(Goedel, Periods) {
     EXPECT_NEAR(std::hypot(once.event[1], once.event[2]), 0, 1e-14) << c["id"];
     EXPECT_NEAR(std::hypot(half.event[1], half.event[2]), want["r_max"].get<double>(), 1e-14) << c["id"];
     const double caustic = want["first_caustic_lambda"];
-    EXPECT_EQ(metric.caustics(caustic * (1 - 1e-12), n_z), 0U) << c["id"];
-    EXPECT_EQ(metric.caustics(caustic * (1 + 1e-12), n_z), 1U) << c["id"];
-    EXPECT_EQ(metric.caustics(7.9999 * period, n_z), 15U)
+    EXPECT_EQ(metric.caustics(caustic * (1 - 1e-12), n_z), 0.0) << c["id"];
+    EXPECT_EQ(metric.caustics(caustic * (1 + 1e-12), n_z), 1.0) << c["id"];
+    EXPECT_EQ(metric.caustics(7.9999 * period, n_z), 15.0)
         << c["id"];  // two a lobe, the last just before its end
   }
 }

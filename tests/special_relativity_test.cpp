@@ -5,6 +5,7 @@
 
 #include "tests/random_rays.h"
 #include "tests/reference_cases.h"
+#include "tests/sanitized.h"
 #include "tests/traced.h"
 
 namespace nullcone::test {
@@ -70,7 +71,7 @@ std::string moving_sphere(double beta, double t, const std::string& more = "") {
 /// with the cone.
 TEST(MovingSphere, OutlineIsACircleAndShiftIsDoppler) {
   for (const double beta : {0.0, 0.5, 0.9, 0.99}) {
-    for (const double t : {3.0, 4.0, 7.0}) {
+    for (const double t : kSanitized ? std::vector{4.0} : std::vector{3.0, 4.0, 7.0}) {
       const Traced traced = trace_text(moving_sphere(beta, t));
       const Vec4<double> u = four_velocity(Vec3<double>{{0, beta, 0}});
       // The observation event in the sphere's rest frame (about its event at proper time 0).

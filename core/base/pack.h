@@ -34,6 +34,7 @@ inline double sqrt(double x) { return __builtin_sqrt(x); }
 inline double abs(double x) { return __builtin_fabs(x); }
 inline double max(double a, double b) { return a < b ? b : a; }
 inline double min(double a, double b) { return b < a ? b : a; }
+inline double floor(double x) { return __builtin_floor(x); }
 inline double select(bool choose, double a, double b) { return choose ? a : b; }
 inline bool any(bool mask) { return mask; }
 inline bool all(bool mask) { return mask; }
@@ -45,6 +46,7 @@ inline long double atan2(long double y, long double x) { return std::atan2(y, x)
 inline long double exp(long double x) { return std::exp(x); }
 inline long double log(long double x) { return std::log(x); }
 inline long double sqrt(long double x) { return std::sqrt(x); }
+inline long double floor(long double x) { return std::floor(x); }
 inline long double abs(long double x) { return std::fabs(x); }
 inline long double max(long double a, long double b) { return a < b ? b : a; }
 inline long double min(long double a, long double b) { return b < a ? b : a; }
@@ -59,6 +61,7 @@ inline Pack atan2(const Pack& y, const Pack& x) { return xsimd::atan2(y, x); }
 inline Pack exp(const Pack& x) { return xsimd::exp(x); }
 inline Pack log(const Pack& x) { return xsimd::log(x); }
 inline Pack sqrt(const Pack& x) { return xsimd::sqrt(x); }
+inline Pack floor(const Pack& x) { return xsimd::floor(x); }
 inline Pack abs(const Pack& x) { return xsimd::abs(x); }
 inline Pack max(const Pack& a, const Pack& b) { return xsimd::select(a < b, b, a); }
 inline Pack min(const Pack& a, const Pack& b) { return xsimd::select(b < a, b, a); }

@@ -13,86 +13,118 @@ NULLCONE_KERNEL_BEGIN
 /// Most evaluations a search may take; beyond it the pixel is marked doubtful.
 inline constexpr int kSearchLimit = 2000;
 
+/// A search under way. Each lane goes its own way: its numbers do not depend on its neighbours.
 template <class S>
-struct Crossing {
-  S lambda{};  ///< where the surface is met, if `met`
-  Mask<S> met{};
-  Mask<S> given_up{};  ///< the search reached its limit, or its numbers broke down
+struct Search {
+  S lambda{};  ///< how far the ray has come; where the surface is met, if `met`
   S steps{};
+  Mask<S> active{}, met{};
+  Mask<S> given_up{};  ///< the search reached its limit, or its numbers broke down
+
+  /// Starts at lambda = 0, for lanes with limit > 0.
+  explicit Search(const S& limit) : lambda(S(0.0)), steps(S(0.0)), active(limit > S(0.0)) {
+    met = given_up = active & !active;
+  }
 };
 
-/// The first crossing with 0 < lambda < limit. `resolution` is what rounding leaves of a length of lambda.
-/// Each lane goes its own way: its numbers do not depend on its neighbours.
+/// Takes up to `rounds` steps towards the first crossing with 0 < lambda < limit. `resolution` is what
+/// rounding leaves of a length of lambda at the start.
 template <class S, class Ray, class Shape>
-Crossing<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, const S& resolution) {
-  Crossing<S> out;
-  out.lambda = S(0.0);
-  out.steps = S(0.0);
-  auto active = limit > S(0.0);
-  out.met = out.given_up = active & !active;
-  for (int i = 0; i < kSearchLimit; ++i) {
-    const Sight<S> sight = ray.at(out.lambda);
-    const S rounding = resolution + S(4e-15) * out.lambda;
+void advance(const Ray& ray, const Shape& shape, const S& limit, const S& resolution, int rounds,
+             Search<S>& search) {
+  for (int i = 0; i < rounds && any(search.active); ++i) {
+    const Sight<S> sight = ray.at(search.lambda);
+    const S rounding = resolution + S(4e-15) * search.lambda;
     const auto far = sight.clearance > S(0.0);
-    const S step = select(far, sight.clearance, min(shape.safe_step(sight, rounding), sight.valid));
-    out.steps = select(active, out.steps + S(1.0), out.steps);
-    out.met = out.met | (active & (step <= rounding));
-    active = active & !out.met;
-    out.given_up = out.given_up | (active & !(step <= S(std::numeric_limits<double>::infinity())));  // NaN
-    out.lambda = select(active, out.lambda + step, out.lambda);
-    active = active & (step < S(kFar)) & (out.lambda < limit);
-    if (!any(active)) return out;
+    // A far ray goes to where it may come near, and past what rounding leaves before that.
+    const S skip = sight.clearance + rounding;
+    const S step = all(far) ? skip : select(far, skip, min(shape.safe_step(sight, rounding), sight.valid));
+    const auto& active = search.active;
+    search.steps = select(active, search.steps + S(1.0), search.steps);
+    search.met = search.met | (active & !far & (step <= rounding));
+    search.active = active & !search.met;
+    const auto broken = search.active & !(step <= S(std::numeric_limits<double>::infinity()));  // NaN
+    const auto too_long = search.active & (search.steps >= S(kSearchLimit));
+    search.given_up = search.given_up | broken | too_long;
+    search.lambda = select(search.active, search.lambda + step, search.lambda);
+    search.active = search.active & !search.given_up & (step < S(kFar)) & (search.lambda < limit);
   }
-  out.given_up = out.given_up | active;
-  return out;
 }
 
-/// The object's own view of a crossing, from derivatives by duals in the four coordinates and tau.
+/// The whole search at once.
+template <class S, class Ray, class Shape>
+Search<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, const S& resolution) {
+  Search<S> search(limit);
+  advance(ray, shape, limit, resolution, kSearchLimit, search);
+  return search;
+}
+
+/// The object's proper time at an event: Newton's method from `tau`, a lane at its own pace.
+template <class Body, class S>
+S local_time(const Body& body, const Vec4<S>& event, S tau) {
+  using D = Dual<S, 1>;
+  const auto x = convert<D>(event);
+  auto active = tau == tau;
+  for (int i = 0; i < 12 && any(active); ++i) {
+    const D late = body.local(x, D::variable(tau, 0)).first;
+    const S step = late.v / late.d[0];
+    tau = select(active, tau - step, tau);
+    active = active & (abs(step) > S(1e-15) * (S(1.0) + abs(tau)));
+  }
+  return tau;
+}
+
+/// A crossing as the object sees it.
+template <class S>
 struct Meeting {
-  double tau;
-  Vec3<double> X;
-  double value;           ///< of the shape's function
-  Vec4<double> gradient;  ///< its chart gradient, at the proper time that belongs to each event
+  S lambda, tau;
+  Vec3<S> X;
 };
 
-template <class Body, class Shape>
-Meeting meet(const Body& body, const Shape& shape, const Vec4<double>& event, double tau) {
-  using D = Dual<double, 5>;
-  const auto x = Vec4<D>::map([&](std::size_t i) { return D::variable(event[i], i); });
-  Vec3<D> X;
-  Vec<double, 5> late_slope;
-  for (int i = 0; i < 12; ++i) {  // Newton's method for the proper time
-    const auto [late, position] = body.local(x, D::variable(tau, 4));
-    X = position;
-    late_slope = late.d;
-    const double step = late.v / late.d[4];
-    tau -= step;
-    if (!(std::fabs(step) > 1e-15 * (1 + std::fabs(tau)))) break;
-  }
-  const D value = shape.value(X);
-  Meeting out{tau, {{X[0].v, X[1].v, X[2].v}}, value.v, {}};
-  for (std::size_t i = 0; i < 4; ++i)
-    out.gradient[i] = value.d[i] - value.d[4] * late_slope[i] / late_slope[4];
-  return out;
-}
-
-/// Polishes lambda by Newton's method on the exact curve; a grazing ray keeps its best value.
-template <class Path, class Body, class Shape>
-Meeting polish(const Path& path, const Body& body, const Shape& shape, double& lambda) {
-  PathPoint<double> P = path.at(lambda);
-  Meeting best = meet(body, shape, P.event, body.first_guess(P.event));
+/// Polishes lambda by Newton's method in (lambda, tau) on the exact curve. Where a ray grazes and the method
+/// does not improve, the best value stays.
+template <class S, class Path, class Body, class Shape>
+Meeting<S> polish(const Path& path, const Body& body, const Shape& shape, const S& found) {
+  using D = Dual<S, 2>;
+  const Vec4<S> start = path.at(found).event;
+  S lambda = found, tau = local_time(body, start, body.first_guess(start)), least(kFar);
+  Meeting<S> best{found, tau, {}};
   for (int i = 0; i < 4; ++i) {
-    const double step = best.value / dot(best.gradient, P.tangent);
-    const double next = lambda - step;
-    if (!(std::fabs(step) < 1e-3 * lambda)) break;
-    const PathPoint<double> Q = path.at(next);
-    const Meeting there = meet(body, shape, Q.event, best.tau);
-    if (!(std::fabs(there.value) < std::fabs(best.value))) break;
-    lambda = next;
-    best = there;
-    P = Q;
+    const PathPoint<S> P = path.at(lambda);
+    const auto x = Vec4<D>::map([&](std::size_t c) {
+      return D(P.event[c], Vec<S, 2>{{P.tangent[c], S(0.0)}});
+    });
+    const auto [late, X] = body.local(x, D::variable(tau, 1));
+    const S wait = -(late.v / late.d[1]), tau_slope = -(late.d[0] / late.d[1]);  // to the right proper time
+    const D value = shape.value(X);
+    const S f = value.v + value.d[1] * wait, slope = value.d[0] + value.d[1] * tau_slope;
+    const auto better = abs(f) < least;
+    least = select(better, abs(f), least);
+    best.lambda = select(better, lambda, best.lambda);
+    best.tau = select(better, tau + wait, best.tau);
+    for (std::size_t c = 0; c < 3; ++c) best.X[c] = select(better, X[c].v + X[c].d[1] * wait, best.X[c]);
+    const S step = f / slope;
+    const auto small = better & (abs(step) < S(1e-3) * lambda);
+    lambda = select(small, best.lambda - step, best.lambda);
+    tau = select(small, best.tau - tau_slope * step, best.tau);
+    if (!any(small)) break;
   }
   return best;
+}
+
+/// The gradient of the shape's function along the vectors e_a of a tetrad at `event`, at the proper time that
+/// belongs to each event.
+template <class S, class Body, class Shape>
+Vec4<S> gradient(const Body& body, const Shape& shape, const Vec4<S>& event, const Tetrad<S>& tetrad,
+                 const S& tau) {
+  using D = Dual<S, 5>;
+  const auto x = Vec4<D>::map([&](std::size_t c) {
+    return D(event[c], Vec<S, 5>{{tetrad.e[0][c], tetrad.e[1][c], tetrad.e[2][c], tetrad.e[3][c], S(0.0)}});
+  });
+  const auto [late, X] = body.local(x, D::variable(tau, 4));
+  const D value = shape.value(X);
+  const S per_tau = value.d[4] / late.d[4];
+  return Vec4<S>::map([&](std::size_t a) { return value.d[a] - per_tau * late.d[a]; });
 }
 
 NULLCONE_KERNEL_END

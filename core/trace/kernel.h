@@ -30,18 +30,48 @@ struct BandRays {
   std::unique_ptr<double[]> memory;
   std::array<double*, 4> k{};  ///< past-directed tangent in the static tetrad
   double *limit = nullptr, *steps = nullptr;
-  std::unique_ptr<std::uint32_t[]> nearest;  ///< object number from 1, 0 for none
+  double *lambda = nullptr, *taken = nullptr;  ///< of the search under way: how far, and how many steps
+  std::unique_ptr<std::uint32_t[]> nearest;    ///< object number from 1, 0 for none
+  std::unique_ptr<std::uint32_t[]> list;       ///< rays that a search or a record is about
   std::unique_ptr<bool[]> doubtful;
 
   explicit BandRays(std::size_t rays)
       : count(rays),
         padded((rays + 7) / 8 * 8),
-        memory(new double[6 * padded]),
+        memory(new double[8 * padded]),
         nearest(new std::uint32_t[padded]()),
+        list(new std::uint32_t[padded]),
         doubtful(new bool[padded]()) {
     for (std::size_t i = 0; i < 4; ++i) k[i] = memory.get() + i * padded;
     limit = memory.get() + 4 * padded;
     steps = memory.get() + 5 * padded;
+    lambda = memory.get() + 6 * padded;
+    taken = memory.get() + 7 * padded;
+  }
+};
+
+/// Some rays of a list, side by side in a pack; the last one is repeated where the list ends.
+template <class S>
+struct Group {
+  static constexpr std::size_t kWidth = Lanes<S>::count;
+  std::array<std::size_t, kWidth> ray{};
+  std::size_t filled;
+
+  Group(const std::uint32_t* list, std::size_t from, std::size_t end) : filled(std::min(kWidth, end - from)) {
+    for (std::size_t lane = 0; lane < kWidth; ++lane) ray[lane] = list[from + std::min(lane, filled - 1)];
+  }
+  S load(const double* column) const {
+    std::array<double, kWidth> values{};
+    for (std::size_t lane = 0; lane < kWidth; ++lane) values[lane] = column[ray[lane]];
+    return Lanes<S>::load(values.data());
+  }
+  void store(const S& x, double* column) const {
+    std::array<double, kWidth> values{};
+    Lanes<S>::store(x, values.data());
+    for (std::size_t lane = 0; lane < filled; ++lane) column[ray[lane]] = values[lane];
+  }
+  Vec4<S> load_k(const BandRays& rays) const {
+    return Vec4<S>::map([&](std::size_t c) { return load(rays.k[c]); });
   }
 };
 
@@ -66,58 +96,99 @@ void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, dou
   }
 }
 
-/// Finds where the rays meet one object, and keeps what is nearer than anything before.
-template <class S, class Placing, class Body, class Shape>
-void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, const Vec4<double>& event,
-            double resolution, BandRays& rays) {
+/// Lists the rays that come near the object's bounding ball at all.
+template <class S, class Placing>
+std::size_t list_candidates(const Placing& placing, const Vec4<double>& event, BandRays& rays) {
+  std::size_t listed = 0;
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
     RayStart<S> start{event, {}};
     for (std::size_t c = 0; c < 4; ++c) start.k[c] = Lanes<S>::load(rays.k[c] + i);
-    const S limit = Lanes<S>::load(rays.limit + i);
-    const Crossing<S> found = first_crossing(object.placing.ray(start), object.shape, limit, S(resolution));
-    Lanes<S>::store(Lanes<S>::load(rays.steps + i) + found.steps, rays.steps + i);
-    Lanes<S>::store(select(found.met, found.lambda, limit), rays.limit + i);
-    std::array<bool, Lanes<S>::count> met{}, given_up{};
-    Lanes<S>::store(found.met, met.data());
-    Lanes<S>::store(found.given_up, given_up.data());
-    for (std::size_t lane = 0; lane < met.size(); ++lane) {
-      if (met[lane]) rays.nearest[i + lane] = number;
-      rays.doubtful[i + lane] |= given_up[lane];
+    std::array<bool, Lanes<S>::count> near{};
+    Lanes<S>::store(placing.ray(start).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i), near.data());
+    for (std::size_t lane = 0; lane < near.size(); ++lane)
+      if (near[lane] && i + lane < rays.count) rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
+  }
+  return listed;
+}
+
+/// Finds where the rays meet one object, and keeps what is nearer than anything before. The rays go on in
+/// rounds of a few steps; those that have ended make room for others after each round, so that packs stay
+/// full.
+template <class S, class Placing, class Body, class Shape>
+void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, const Vec4<double>& event,
+            double resolution, BandRays& rays) {
+  constexpr int kRound = 4;
+  std::size_t listed = list_candidates<S>(object.placing, event, rays);
+  for (std::size_t i = 0; i < listed; ++i) rays.lambda[rays.list[i]] = rays.taken[rays.list[i]] = 0;
+  while (listed > 0) {
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < listed; i += Lanes<S>::count) {
+      const Group<S> group(rays.list.get(), i, listed);
+      const S limit = group.load(rays.limit);
+      Search<S> search(limit);
+      search.lambda = group.load(rays.lambda);
+      search.steps = group.load(rays.taken);
+      advance(object.placing.ray(RayStart<S>{event, group.load_k(rays)}), object.shape, limit, S(resolution),
+              kRound, search);
+      group.store(search.lambda, rays.lambda);
+      group.store(search.steps, rays.taken);
+      std::array<bool, Lanes<S>::count> active{}, met{}, given_up{};
+      Lanes<S>::store(search.active, active.data());
+      Lanes<S>::store(search.met, met.data());
+      Lanes<S>::store(search.given_up, given_up.data());
+      for (std::size_t lane = 0; lane < group.filled; ++lane) {
+        const std::size_t ray = group.ray[lane];
+        if (active[lane]) {
+          rays.list[left++] = static_cast<std::uint32_t>(ray);
+          continue;
+        }
+        rays.steps[ray] += rays.taken[ray];
+        rays.doubtful[ray] |= given_up[lane];
+        if (!met[lane]) continue;
+        rays.limit[ray] = rays.lambda[ray];
+        rays.nearest[ray] = number;
+      }
     }
+    listed = left;
   }
 }
 
-/// Everything a record says about one crossing.
-template <Metric M, class Placing, class Body, class Shape>
-HitRecord record(const M& metric, const Placed<Placing, Body, Shape>& object, const Vec4<double>& observation,
-                 const Vec4<double>& past, double lambda, double tau_origin) {
-  const auto path = metric.path(observation, past);
-  const Meeting here = polish(path, object.body, object.shape, lambda);
-  const PathPoint<double> P = path.at(lambda);
-  const Matrix4<double> g = metric.g(P.event);
+/// What a record says about crossings, in columns of a pack.
+template <class S>
+struct Recorded {
+  S order, Z, u, v, shift, t, tau, mu;
+};
+
+/// Everything about the crossings of some rays with one object.
+template <class S, Metric M, class Placing, class Body, class Shape>
+Recorded<S> record(const M& metric, const Placed<Placing, Body, Shape>& object,
+                   const Vec4<double>& observation, const Vec4<S>& past, const S& found) {
+  const auto path = metric.path(convert<S>(observation), past);
+  const Meeting<S> here = polish(path, object.body, object.shape, found);
+  const PathPoint<S> P = path.at(here.lambda);
+  const Matrix4<S> g = metric.g(P.event);
 
   // The surface's 4-velocity: d/dtau at a fixed point of the object.
-  using D = Dual<double, 1>;
+  using D = Dual<S, 1>;
   const Vec4<D> moving = object.body.event(D::variable(here.tau, 0), convert<D>(here.X));
-  Vec4<double> u = Vec4<double>::map([&](std::size_t i) { return moving[i].d[0]; });
-  u = (1 / sqrt(inner(g, u, u))) * u;
-  const double frequency = -inner(g, P.tangent, u);
+  const auto u = Vec4<S>::map([&](std::size_t i) { return moving[i].d[0]; });
+  const S frequency = -inner(g, P.tangent, u) / sqrt(inner(g, u, u));
 
   // The emission angle: between the photon and the unit normal, on the side to which the photon leaves.
-  const double steepness = sqrt(-dot(here.gradient, solve(g, here.gradient)));
-  const double mu = std::fabs(dot(here.gradient, P.tangent)) / (frequency * steepness);
-  const auto [tex_u, tex_v] = object.shape.uv(here.X);
-  const double n_z = past[3] / past[0];
-  return {0,
-          0,
-          metric.caustics(-past[0] * lambda, n_z),
-          lambda,
-          tex_u,
-          tex_v,
-          1 / frequency,
-          P.event[0] - observation[0],
-          here.tau - tau_origin,
-          std::fmin(mu, 1.0)};
+  const Vec4<S> slope =
+      gradient(object.body, object.shape, P.event, static_tetrad(metric, P.event), here.tau);
+  const S steepness =
+      sqrt(slope[1] * slope[1] + slope[2] * slope[2] + slope[3] * slope[3] - slope[0] * slope[0]);
+  const S mu = abs(dot(slope, P.local)) / (frequency * steepness);
+  const auto uv = object.shape.uv(here.X);
+  return {metric.caustics(-(past[0] * here.lambda), past[3] / past[0]),
+          here.lambda,
+          uv[0],
+          uv[1],
+          S(1.0) / frequency,
+          P.event[0] - S(observation[0]),
+          here.tau,
+          min(mu, S(1.0))};
 }
 
 NULLCONE_KERNEL_END

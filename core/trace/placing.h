@@ -26,18 +26,32 @@ struct RestPlacing {
 
   template <class S>
   struct Ray {
+    using Path = decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{}));
     const RestPlacing* placing;
-    decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{})) path;
+    Path path;
+    decltype(make_guard(std::declval<Path>(),
+                        0.0)) guard;  ///< for local objects, which stand at the chart's origin
+
+    Ray(const RestPlacing* from, const Path& along) : placing(from), path(along), guard(along, from->ball) {}
+
+    S clearance(const S& lambda) const { return placing->local ? guard.clearance(lambda) : S(0.0); }
 
     Sight<S> at(const S& lambda) const {
+      Sight<S> out;
+      out.clearance = clearance(lambda);
+      if (all(out.clearance > S(0.0))) return out;
       const PathPoint<S> P = path.at(lambda);
+      bound_at_rest(path, P, out);
+      out.X = spatial(P.event);
+      out.slope = spatial(P.tangent);
+      if (!placing->local) {
+        out.X = out.X - spatial(convert<S>(placing->place));
+        const S distance = norm(out.X);
+        out.clearance = select(distance > S(1.5 * placing->ball),
+                               min((distance - S(placing->ball)) / out.slope_max, out.valid), S(0.0));
+      }
       const Matrix3<S> rows = {convert<S>(placing->axes[0]), convert<S>(placing->axes[1]),
                                convert<S>(placing->axes[2])};
-      Sight<S> out;
-      out.X = spatial(P.event);
-      if (!placing->local) out.X = out.X - spatial(convert<S>(placing->place));
-      out.slope = spatial(P.tangent);
-      bound_at_rest(path, P, placing->ball, placing->local, out);
       out.X = rows * out.X;
       out.slope = rows * out.slope;
       return out;
@@ -65,6 +79,11 @@ struct MovingPlacing {
     const MovingPlacing* placing;
     decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{})) path;
     decltype(std::declval<MovingPlacing>().orbit.ray(Vec4<double>{}, Vec4<S>{})) around;
+
+    S clearance(const S& lambda) const {
+      S tau;
+      return around.clearance(lambda, tau);
+    }
 
     Sight<S> at(const S& lambda) const {
       Sight<S> out;
@@ -126,7 +145,10 @@ struct LocalBody {
   Vec4<S> event(const S& tau, const Vec3<S>& X) const {
     return frame.event(tau, X);
   }
-  double first_guess(const Vec4<double>& event) const { return orbit.proper_time(event); }
+  template <class S>
+  S first_guess(const Vec4<S>& event) const {
+    return orbit.proper_time(event);
+  }
 };
 
 /// The same for an object that is fixed in the chart; its clocks are those of static observers.
@@ -149,7 +171,10 @@ struct ChartBody {
     out[0] = out[0] + tau / sqrt(metric.g(out)[0][0]);
     return out;
   }
-  double first_guess(const Vec4<double>& event) const { return event[0] - place[0]; }
+  template <class S>
+  S first_guess(const Vec4<S>& event) const {
+    return event[0] - S(place[0]);
+  }
 };
 
 NULLCONE_KERNEL_END

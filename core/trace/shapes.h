@@ -48,9 +48,11 @@ struct Sphere {
   }
 
   /// u: longitude, 0.5 at +x, growing towards +y; v: 0 at -z, 1 at +z (equirectangular).
-  static std::array<double, 2> uv(const Vec3<double>& X) {
+  template <class S>
+  static Vec<S, 2> uv(const Vec3<S>& X) {
     constexpr double kPi = std::numbers::pi;
-    return {0.5 + atan2(X[1], X[0]) / (2 * kPi), 0.5 + atan2(X[2], sqrt(X[0] * X[0] + X[1] * X[1])) / kPi};
+    const S longitude = atan2(X[1], X[0]), latitude = atan2(X[2], sqrt(X[0] * X[0] + X[1] * X[1]));
+    return {{S(0.5) + S(0.5 / kPi) * longitude, S(0.5) + S(1 / kPi) * latitude}};
   }
 };
 
@@ -85,8 +87,9 @@ struct Quad {
     return select(by_distance <= resolution, S(0.0), max(by_plane, by_distance));
   }
 
-  std::array<double, 2> uv(const Vec3<double>& X) const {
-    return {0.5 + 0.5 * X[0] / half_x, 0.5 + 0.5 * X[1] / half_y};
+  template <class S>
+  Vec<S, 2> uv(const Vec3<S>& X) const {
+    return {{S(0.5) + S(0.5 / half_x) * X[0], S(0.5) + S(0.5 / half_y) * X[1]}};
   }
 };
 
