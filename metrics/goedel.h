@@ -123,7 +123,7 @@ Goedel::Path<S> Goedel::path(const Vec4<S>& start, const Vec4<S>& k) const {
 }
 
 template <class S>
-typename Goedel::Path<S>::Turned Goedel::Path<S>::turned(const S& lambda) const {
+NULLCONE_INLINE typename Goedel::Path<S>::Turned Goedel::Path<S>::turned(const S& lambda) const {
   const S mu = k0 * lambda;
   const auto [s, c] = sincos(S(1 / (kSqrt2 * metric->a)) * kappa * mu);
   const Complex<S> A = {c, -(s / kappa)};
@@ -132,7 +132,7 @@ typename Goedel::Path<S>::Turned Goedel::Path<S>::turned(const S& lambda) const 
 }
 
 template <class S>
-PathPoint<S> Goedel::Path<S>::at(const S& lambda) const {
+NULLCONE_INLINE PathPoint<S> Goedel::Path<S>::at(const S& lambda) const {
   const Turned m = turned(lambda);
   const S P2 = norm2(m.P);
   const Complex<S> q = (S(1.0) / sqrt(P2)) * (m.Q * conj(m.P));

@@ -17,8 +17,8 @@ struct GoedelOrbit {
   Vec4<double> centre;  ///< C: an event on the axis of the base circle
   double t_c = 0, phi_c = 0, z_c = 0, omega = 0, v = 0, dt_dtau = 1;
   Complex<double> q_c{};                ///< the object's place in the co-moving plane, on the real axis
-  std::array<double, 3> low{}, high{};  ///< the box: rho, phi, z
-  bool all_phi = false;                 ///< the body reaches round the axis
+  std::array<double, 3> low{}, high{};  ///< the box: u = sinh rho, |phi|, z
+  double cosh_low = 1;                  ///< cosh rho at the inner edge of the box
   double reach = 0;                     ///< radius of the ball about the object's place
   double close = 0;                     ///< distance at which the search goes over to the rest frame
   double ball = 0;                      ///< bounding radius in the rest frame
@@ -47,39 +47,43 @@ struct GoedelOrbit {
     Goedel::Path<S> path;  ///< in the chart about C
     S frequency;           ///< |k.K|, K the Killing vector that is the object's 4-velocity on its worldline
 
-    /// Distance in H^2 x R from the object's place in co-moving coordinates.
-    S distance(const Complex<S>& q, const S& z) const;
+    /// Distance from the object's place in the chart about it, in co-moving coordinates; `stretch` is its
+    /// greatest rate a unit of distance in H^2 x R, from here inwards.
+    S distance(const Complex<S>& q, const S& z, S& stretch) const;
     /// Affine length for which the body is surely not met, 0 close to it; and the object's proper time then.
     S clearance(const S& lambda, S& tau) const;
   };
-  /// The ray with past-directed tangent k (static tetrad) at the event `start` of the world's chart.
+  /// What all rays from one event have in common: the event in the chart about C, and how the tetrad turns.
+  struct Launch {
+    Vec4<double> start;
+    Complex<double> turn;
+  };
+  Launch launch(const Vec4<double>& event) const;
+  /// The ray with past-directed tangent k (static tetrad) at the event.
   template <class S>
-  Ray<S> ray(const Vec4<double>& start, const Vec4<S>& k) const;
+  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const;
 
  private:
   void find_box(const LocalFrame<Goedel>& frame);
   void find_farthest(const LocalFrame<Goedel>& frame);
   struct Comoving {
-    double rho, phi, z;
+    double u, phi, z;
     Complex<double> q;
   };
   Comoving comoving(const Vec4<double>& world) const;
 };
 
-/// k in the static tetrad at x, carried along by the isometry that takes P to the origin.
-template <class S>
-Vec4<S> carried(const Goedel& metric, const Vec4<double>& P, const Vec4<double>& x, const Vec4<S>& k) {
-  const Complex<double> turn = metric.turn(P, x);
-  const Complex<S> w = Complex<S>{S(turn.re), S(turn.im)} * Complex<S>{k[1], k[2]};
-  return {{k[0], w.re, w.im, k[3]}};
+inline GoedelOrbit::Launch GoedelOrbit::launch(const Vec4<double>& event) const {
+  return {metric.to_origin(centre, event), metric.turn(centre, event)};
 }
 
 template <class S>
-GoedelOrbit::Ray<S> GoedelOrbit::ray(const Vec4<double>& start, const Vec4<S>& k) const {
-  const Vec4<S> x = convert<S>(metric.to_origin(centre, start)), local = carried(metric, centre, start, k);
-  const auto charges = metric.conserved(x, static_tetrad(metric, x).to_chart(local));
-  const S &E = charges[0].second, &L = charges[1].second, &p_z = charges[2].second;
-  return {this, metric.path(x, local), abs(S(dt_dtau) * (E + S(omega) * L + S(v) * p_z))};
+GoedelOrbit::Ray<S> GoedelOrbit::ray(const Launch& launch, const Vec4<S>& k) const {
+  const Vec4<S> x = convert<S>(launch.start), local = turned_about_e3(launch.turn, k);
+  // k.K = dt/dtau (E + Omega L + v p_z), with the tangent's covariant components at the start.
+  const Vec4<S> lower = convert<S>(metric.g(launch.start)) * static_tetrad(metric, x).to_chart(local);
+  const S L = x[1] * lower[2] - x[2] * lower[1];
+  return {this, metric.path(x, local), abs(S(dt_dtau) * (lower[0] + S(omega) * L + S(v) * lower[3]))};
 }
 
 template <class S>
@@ -95,43 +99,42 @@ S GoedelOrbit::Ray<S>::clearance(const S& lambda, S& tau) const {
   const Complex<S> q = o.metric.to_q(P.event);
   const auto angle = sincos(S(o.omega) * elapsed + S(o.phi_c));
   const Complex<S> turned = q * Complex<S>{angle.cos, -angle.sin};
-  const S rho = asinh_of(q), phi = atan2(turned.im, turned.re);
-  const S z = P.event[3] - S(o.z_c) - S(o.v) * elapsed;
+  const S z = P.event[3] - S(o.z_c) - S(o.v) * elapsed, u = sqrt(norm2(q)), p = sqrt(S(1.0) + u * u);
+  const S over_u = S(1.0) / max(u, S(1e-290)), sine = abs(turned.im) * over_u, cosine = turned.re * over_u;
+  const S phi = select(cosine > S(0.0), sine, S(0.5 * std::numbers::pi) - cosine);  // at most |phi|
   const auto outside = [](const S& x, double low, double high) {
     return max(max(S(low) - x, x - S(high)), S(0.0));
   };
-  const auto around = [&](const S& x, double low, double high) {  // the shorter way round the circle
-    const S one_way = max(S(low) - x, x - S(high));
-    return max(min(one_way, S(2 * std::numbers::pi - (high - low)) - one_way), S(0.0));
-  };
-  const S gap_rho = outside(rho, o.low[0], o.high[0]), gap_z = outside(z, o.low[2], o.high[2]);
-  const S gap_phi = o.all_phi ? S(0.0) : around(phi, o.low[1], o.high[1]);
+  const S gap_u = outside(u, o.low[0], o.high[0]), gap_z = outside(z, o.low[2], o.high[2]);
+  const S gap_phi = max(phi - S(o.high[1]), S(0.0));
 
-  // rho moves at most with s/2a; z with its own speed minus the object's; phi and the distance are bounded
-  // within a window of rho: |dt/dlambda| <= k + sqrt2 s.
-  const S window = min(S(0.125), S(0.5) * rho), nearest = rho - window, steepest = min(rho + window, S(1.0));
+  // u = sinh rho, and rho moves at most with s/2a; z with its own speed minus the object's; phi and the
+  // distance are bounded within a window of rho: |dt/dlambda| <= k + sqrt2 s. tanh rho = u/p is at most rho.
+  const S tanh = u / p, window = min(S(0.125), S(0.5) * tanh);
+  const S nearest = tanh - window, steepest = min(tanh + window, S(1.0));
   const S phi_speed = s * (S(0.5 / a) / nearest + S(Goedel::kSqrt2 * o.omega) * steepest) + S(o.omega) * k;
   const S dz = -P.tangent[3], approach = select(z < S(0.5 * (o.low[2] + o.high[2])), -dz, dz);
   const S time_speed = k + S(Goedel::kSqrt2) * s, z_speed = approach + S(std::fabs(o.v)) * time_speed;
-  const S u = sqrt(norm2(q)),
-          p = sqrt(S(1.0) + u * u);  // sinh(rho + 1/8) and cosh bound what the window holds
   const S round = S(2 * a) * (S(1.00783) * u + S(0.12533) * p) * (S(1.00783) * p + S(0.12533) * u);
-  const S speed = k + time_speed * (S(o.omega) * round + S(std::fabs(o.v)));
-  const S within = S(2 * a) * window / s, gap = distance(turned, z) - S(o.reach);
-  const S by_rho = S(2 * a) * gap_rho / s;
+  S stretch;
+  const S gap = distance(turned, z, stretch) - S(o.reach);
+  const S speed = stretch * (k + time_speed * (S(o.omega) * round + S(std::fabs(o.v))));
+  const S within = S(2 * a) * window / s;
+  const S by_u = S(2 * a) * gap_u / (s * max(p, S(o.cosh_low)));
   const S by_z = select(z_speed > S(0.0), gap_z / z_speed, select(gap_z > S(0.0), S(kFar), S(0.0)));
   const S by_phi = min(gap_phi / phi_speed, within), by_distance = min(gap / speed, S(0.25 * a) / s);
-  return select(gap <= S(o.close - o.reach), S(0.0), max(max(by_rho, by_z), max(by_phi, by_distance)));
+  return select(gap <= S(o.close - o.reach), S(0.0), max(max(by_u, by_z), max(by_phi, by_distance)));
 }
 
 /// By (3.2), so that nothing cancels for a -> infinity.
 template <class S>
-S GoedelOrbit::Ray<S>::distance(const Complex<S>& q, const S& z) const {
+S GoedelOrbit::Ray<S>::distance(const Complex<S>& q, const S& z, S& stretch) const {
   const Complex<S> q0 = {S(orbit->q_c.re), S(orbit->q_c.im)}, dq = q - q0, middle = q + q0;
   const S p0 = cosh_of(q0), p = cosh_of(q);
   const Complex<S> qh = p0 * dq - ((dq.re * middle.re + dq.im * middle.im) / (p + p0)) * q0;
-  const S plane = S(2 * orbit->metric.a) * asinh_of(qh);
-  return sqrt(plane * plane + z * z);
+  const S u2 = norm2(qh);
+  stretch = sqrt(S(1.0) + u2);
+  return sqrt(S(4 * orbit->metric.a * orbit->metric.a) * u2 + z * z);
 }
 
 inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding_radius)
@@ -164,32 +167,34 @@ inline GoedelOrbit::Comoving GoedelOrbit::comoving(const Vec4<double>& world) co
   const double elapsed = x[0] - t_c;
   const auto [s, c] = sincos(omega * elapsed + phi_c);
   const Complex<double> q = metric.to_q(x) * Complex<double>{c, -s};
-  return {asinh_of(q), atan2(q.im, q.re), x[3] - z_c - v * elapsed, q};
+  return {std::sqrt(norm2(q)), std::fabs(atan2(q.im, q.re)), x[3] - z_c - v * elapsed, q};
 }
 
 /// Box and ball from 2,000 points of the bounding sphere; 3 % of room cover what lies between them, and
 /// rounding in the chart about C is allowed for.
 inline void GoedelOrbit::find_box(const LocalFrame<Goedel>& frame) {
-  const double a = metric.a, rho_c = asinh_of(q_c);
+  const double a = metric.a, u_c = q_c.re;
   const Ray<double> measure{this, {}, 0};
-  for (std::size_t i = 0; i < 3; ++i) low[i] = kFar, high[i] = -kFar;
+  low = {kFar, 0, kFar}, high = {-kFar, 0, -kFar};
   constexpr int kPoints = 2000;
   for (int n = 0; n < kPoints; ++n) {
     const Comoving y = comoving(frame.event(0.0, ball * golden_point(n, kPoints)));
-    const std::array<double, 3> place = {y.rho, y.phi, y.z};
-    for (std::size_t i = 0; i < 3; ++i)
-      low[i] = std::fmin(low[i], place[i]), high[i] = std::fmax(high[i], place[i]);
-    reach = std::fmax(reach, measure.distance(y.q, y.z));
+    double stretched = 1;
+    low[0] = std::fmin(low[0], y.u), high[0] = std::fmax(high[0], y.u);
+    low[2] = std::fmin(low[2], y.z), high[2] = std::fmax(high[2], y.z);
+    high[1] = std::fmax(high[1], y.phi);
+    reach = std::fmax(reach, measure.distance(y.q, y.z, stretched));
   }
-  all_phi = high[1] - low[1] > 3 || 2 * a * rho_c < 1.3 * ball;
-  if (all_phi) low[0] = -1, low[1] = -4, high[1] = 4;
+  if (high[1] > 1.5 || 2 * a * u_c < 1.3 * ball)
+    low[0] = -1, high[1] = 4;  // the body may reach round the axis
   const Complex<double> q = metric.to_q(centre);
   const double rounding = 1e-14 * a * norm2(Complex<double>{cosh_of(q), std::sqrt(norm2(q))});
-  const std::array<double, 3> room = {rounding / a, rounding / (a * std::fmax(rho_c, 1e-3)), rounding};
+  const std::array<double, 3> room = {rounding / a, rounding / (a * std::fmax(u_c, 1e-3)), rounding};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double half = 0.5 * (high[i] - low[i]);
-    low[i] -= 0.03 * half + room[i], high[i] += 0.03 * half + room[i];
+    const double more = 0.015 * (high[i] - low[i]) + room[i];
+    low[i] -= more, high[i] += more;
   }
+  cosh_low = std::sqrt(1 + low[0] * low[0]);
   reach = 1.03 * reach + rounding;
   close = 1.3 * reach;
 }
@@ -200,10 +205,8 @@ inline void GoedelOrbit::find_farthest(const LocalFrame<Goedel>& frame) {
   const Vec4<double> place = {{t_c, 2 * metric.a * q_c.re, 0, 0}};
   for (int n = 0; n < kPoints; ++n) {
     const Vec3<double> direction = golden_point(n, kPoints);
-    const double flat = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
-    const double r = 2 * metric.a * std::sinh(0.5 * close * flat / metric.a) / flat;
     const Vec4<double> near =
-        metric.from_origin(place, Vec4<double>{{0, r * direction[0], r * direction[1], 0}});
+        metric.from_origin(place, Vec4<double>{{0, close * direction[0], close * direction[1], 0}});
     const auto [s, c] = sincos(phi_c);
     const Vec4<double> x =
         metric.from_origin(centre, Vec4<double>{{t_c, c * near[1] - s * near[2], s * near[1] + c * near[2],

@@ -131,8 +131,9 @@ class SceneTracer final : public Tracer {
     return true;
   }
 
-  /// Records of all rays that met object `number`, each at its ray's place in `records`.
-  void record_object(std::uint32_t number, BandRays& rays, HitRecord* records) const {
+  /// Records of all rays that met object `number`, each at its place in `hits`.
+  void record_object(std::uint32_t number, BandRays& rays, const std::uint32_t* place,
+                     HitRecord* hits) const {
     std::size_t listed = 0;
     for (std::size_t i = 0; i < rays.count; ++i)
       if (rays.nearest[i] == number) rays.list[listed++] = static_cast<std::uint32_t>(i);
@@ -145,38 +146,46 @@ class SceneTracer final : public Tracer {
           },
           objects_[number - 1]);
       for (std::size_t lane = 0; lane < group.filled; ++lane)
-        records[group.ray[lane]] = {static_cast<std::uint32_t>(group.ray[lane]),
-                                    number,
-                                    static_cast<std::uint32_t>(r.order.get(lane)),
-                                    r.Z.get(lane),
-                                    r.u.get(lane),
-                                    r.v.get(lane),
-                                    r.shift.get(lane),
-                                    r.t.get(lane),
-                                    r.tau.get(lane) - origin,
-                                    r.mu.get(lane)};
+        hits[place[group.ray[lane]]] = {static_cast<std::uint32_t>(group.ray[lane]),
+                                        number,
+                                        static_cast<std::uint32_t>(r.order.get(lane)),
+                                        r.Z.get(lane),
+                                        r.u.get(lane),
+                                        r.v.get(lane),
+                                        r.shift.get(lane),
+                                        r.t.get(lane),
+                                        r.tau.get(lane) - origin,
+                                        r.mu.get(lane)};
     }
   }
 
   std::size_t write(BandRays& rays, const BandRoom& room) const {
-    const std::unique_ptr<HitRecord[]> records(new HitRecord[rays.count]);
-    for (std::uint32_t number = 1; number <= count_; ++number)
-      if (number != sky_) record_object(number, rays, records.get());
-    std::size_t hits = 0;
+    const bool sky_is_seen = sky_ != 0 && !(lookback_ < kFar);
+    const std::unique_ptr<std::uint32_t[]> place(new std::uint32_t[rays.count]);  // of a ray's record
+    std::uint32_t hits = 0;
     for (std::size_t i = 0; i < rays.count; ++i) {
-      Status status = lookback_ < 1e300 ? Status::lookback_reached : Status::sky;
+      place[i] = hits;
+      hits += rays.nearest[i] != 0 || sky_is_seen;
+    }
+    for (std::uint32_t number = 1; number <= count_; ++number)
+      if (number != sky_) record_object(number, rays, place.get(), room.hits.data());
+
+    std::size_t kept = 0;  // records whose numbers broke down are dropped
+    for (std::size_t i = 0; i < rays.count; ++i) {
+      Status status = lookback_ < kFar ? Status::lookback_reached : Status::sky;
       if (rays.nearest[i] != 0) {
-        status = finite(records[i]) ? Status::hit : Status::not_finite;
-        if (status == Status::hit) room.hits[hits++] = records[i];
-      } else if (status == Status::sky && sky_ != 0) {
+        const HitRecord& hit = room.hits[place[i]];
+        status = finite(hit) ? Status::hit : Status::not_finite;
+        if (status == Status::hit) room.hits[kept++] = hit;
+      } else if (sky_is_seen) {
         const Vec4<double> past = {{rays.k[0][i], rays.k[1][i], rays.k[2][i], rays.k[3][i]}};
-        room.hits[hits++] = sky_record(past, static_cast<std::uint32_t>(i));
+        room.hits[kept++] = sky_record(past, static_cast<std::uint32_t>(i));
       }
       if (rays.doubtful[i]) status = Status::step_limit;
       room.rays[i] = {static_cast<std::uint32_t>(status), static_cast<std::uint32_t>(rays.steps[i]), 0.0F,
                       0.0F};
     }
-    return hits;
+    return kept;
   }
 
   static bool finite(const HitRecord& hit) {

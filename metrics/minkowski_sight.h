@@ -55,8 +55,10 @@ struct MinkowskiOrbit {
       return S(0.0);
     }
   };
+  struct Launch {};
+  Launch launch(const Vec4<double>&) const { return {}; }
   template <class S>
-  Ray<S> ray(const Vec4<double>&, const Vec4<S>& k) const {
+  Ray<S> ray(const Launch&, const Vec4<S>& k) const {
     return {abs(boost(convert<S>(u), k)[0])};
   }
 };

@@ -75,10 +75,14 @@ struct Tally {
   }
 };
 
+struct RayStart {
+  Vec4<double> event, k;
+};
+
 /// A ray of random length that passes within about 2 R of the event `target`: traced to the future from
 /// there.
 template <class M>
-RayStart<double> ray_through(const M& metric, const Vec4<double>& target, double lambda, Random& random) {
+RayStart ray_through(const M& metric, const Vec4<double>& target, double lambda, Random& random) {
   const auto P = metric.path(target, moving(random.direction())).at(lambda);
   return {P.event, -P.local};
 }
@@ -104,7 +108,8 @@ TEST(Crossings, StaticSpheresInGoedel) {
     const Vec3<double> off = random.uniform(0, 2) * R * random.direction();
     const auto start = ray_through(metric, metric.from_origin(P, Vec4<double>{{0, off[0], off[1], off[2]}}),
                                    random.uniform(0, limit), random);
-    const auto path = metric.path(metric.to_origin(P, start.event), carried(metric, P, start.event, start.k));
+    const auto path =
+        metric.path(metric.to_origin(P, start.event), turned_about_e3(metric.turn(P, start.event), start.k));
     const auto at = [&](double l) { return path.at(l).event; };
     if (norm(spatial(at(0))) <= R * 1.001) continue;
     const auto depth = [&](double l) { return norm(spatial(at(l))) - R; };
@@ -118,7 +123,8 @@ TEST(Crossings, StaticSpheresInGoedel) {
     const Sphere sphere{R};
     const RestPlacing<Goedel> placing{metric, P, true, kAxes, R};
     tally.compare(oracle(0, limit, depth, reach),
-                  first_crossing(placing.ray(start), sphere, limit, 4e-15 * norm(spatial(start.event))),
+                  first_crossing(placing.ray(placing.launch(start.event), start.k), sphere, limit,
+                                 4e-15 * norm(spatial(start.event))),
                   root_tolerance(R, 10 * metric.a), depth, R);
   }
   tally.expect_clean();
@@ -143,7 +149,8 @@ TEST(Crossings, CoordinateSpheresInGoedel) {
     const auto reach = [&](double l, double half) { return depth(l) - half * speed < 0; };
     const RestPlacing<Goedel> placing{metric, place, false, kAxes, R};
     tally.compare(oracle(0, limit, depth, reach),
-                  first_crossing(placing.ray(start), Sphere{R}, limit, 4e-15 * norm(spatial(start.event))),
+                  first_crossing(placing.ray(placing.launch(start.event), start.k), Sphere{R}, limit,
+                                 4e-15 * norm(spatial(start.event))),
                   root_tolerance(R, 10 * metric.a), depth, R);
   }
   tally.expect_clean();
@@ -173,7 +180,7 @@ TEST(Crossings, FallingSpheresInGoedel) {
       const Vec4<double> target =
           frame.event(random.uniform(-3, 3), random.uniform(0, 2) * R * random.direction());
       const auto start = ray_through(metric, target, random.uniform(0, limit), random);
-      const auto ray = placing.ray(start);
+      const auto ray = placing.ray(placing.launch(start.event), start.k);
       const auto rest_distance = [&](double l) {
         const Vec4<double> x = ray.path.at(l).event;
         return norm(spatial(frame.rest(x, proper_time(frame, x, orbit.proper_time(x)))));
@@ -234,7 +241,8 @@ TEST(Crossings, MovingSpheresInMinkowski) {
     };
     const MovingPlacing<Minkowski> placing{frame, make_orbit(frame, R), true};
     tally.compare(expected,
-                  first_crossing(placing.ray(start), Sphere{R}, limit, 4e-15 * norm(spatial(start.event))),
+                  first_crossing(placing.ray(placing.launch(start.event), start.k), Sphere{R}, limit,
+                                 4e-15 * norm(spatial(start.event))),
                   root_tolerance(R, 100 * u[0] * u[0]), depth, R);
   }
   tally.expect_clean();

@@ -13,8 +13,8 @@
 #define NULLCONE_KERNEL_END } }
 // clang-format on
 
-/// For small functions in the innermost loops, and for formulas of which a caller needs only a part: the compiler's own
-/// limits would leave calls that carry packs through memory.
+/// For small functions in the innermost loops, and for formulas of which a caller needs only a part: the
+/// compiler's own limits would leave calls that carry packs through memory.
 #define NULLCONE_INLINE __attribute__((always_inline)) inline
 
 namespace nullcone::NULLCONE_ISA {}

@@ -50,6 +50,13 @@ Vec<To, N> convert(const std::array<double, N>& a) {
   return Vec<To, N>::map([&](std::size_t i) { return To(a[i]); });
 }
 
+template <class To, class From, std::size_t N>
+std::array<Vec<To, N>, N> convert(const std::array<Vec<From, N>, N>& m) {
+  std::array<Vec<To, N>, N> out;
+  for (std::size_t i = 0; i < N; ++i) out[i] = convert<To>(m[i]);
+  return out;
+}
+
 template <class S, std::size_t N>
 S dot(const Vec<S, N>& a, const Vec<S, N>& b) {
   S out = a[0] * b[0];

@@ -14,15 +14,16 @@
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/record/whole_file.h"
 
 namespace nullcone {
 
@@ -72,54 +73,62 @@ Imf::Slice flat_slice(Imf::PixelType type, const void* base, std::size_t stride,
           stride * static_cast<std::size_t>(width)};
 }
 
-/// For every channel a pointer a pixel into its column; counts a pixel. Deep EXR works on these.
-struct DeepPointers {
-  std::vector<unsigned> counts;
+/// For every channel a pointer a pixel into its column: deep EXR works on these. One scan line of them serves
+/// all (from line to line the stride is 0); those of a whole picture would be twice as large as its records.
+struct DeepLine {
   std::vector<std::vector<char*>> pointers;
   Imf::DeepFrameBuffer buffer;
 
-  DeepPointers(Hits& hits, int width, std::size_t pixels) : counts(pixels) {
-    const auto row = static_cast<std::size_t>(width);
-    buffer.insertSampleCountSlice(flat_slice(Imf::UINT, counts.data(), sizeof(unsigned), width));
+  DeepLine(const Hits& hits, int width, const Imf::Slice& counts) {
+    buffer.insertSampleCountSlice(counts);
     pointers.reserve(std::tuple_size_v<decltype(kHitChannels)>);
-    for_each_channel(hits, kHitChannels, [&](const auto& channel, auto& column) {
+    for_each_channel(hits, kHitChannels, [&](const auto& channel, const auto& column) {
       using T = Value<decltype(column)>;
-      std::vector<char*>& at = pointers.emplace_back(pixels);
-      buffer.insert(std::string(channel.name),
-                    Imf::DeepSlice(pixel_type<T>(), reinterpret_cast<char*>(at.data()), sizeof(char*),
-                                   sizeof(char*) * row, sizeof(T)));
+      std::vector<char*>& at = pointers.emplace_back(width);
+      buffer.insert(
+          std::string(channel.name),
+          Imf::DeepSlice(pixel_type<T>(), reinterpret_cast<char*>(at.data()), sizeof(char*), 0, sizeof(T)));
     });
   }
-  void aim(Hits& hits) {
+  /// Points into the columns at the line that begins with pixel number `first`.
+  void aim(Hits& hits, std::size_t first) {
     std::size_t c = 0;
     for_each_channel(hits, kHitChannels, [&](const auto&, auto& column) {
-      for (std::size_t i = 0; i < counts.size(); ++i)
-        pointers[c][i] = reinterpret_cast<char*>(column.data() + hits.offset[i]);
-      ++c;
+      std::vector<char*>& at = pointers[c++];
+      for (std::size_t x = 0; x < at.size(); ++x)
+        at[x] = reinterpret_cast<char*>(column.data() + hits.offset[first + x]);
     });
   }
 };
 
 void write_preview(Imf::MultiPartOutputFile& file, const Dataset& dataset, const Preview& preview) {
-  std::vector<half> pixels(preview.begin(), preview.end());
+  if (preview.size() != 4 * dataset.pixels()) throw std::invalid_argument("the preview has another size");
+  std::vector<half> line(4 * static_cast<std::size_t>(dataset.manifest.width));
   Imf::FrameBuffer buffer;
   for (std::size_t c = 0; c < 4; ++c)
     buffer.insert(kPreviewChannels[c],
-                  flat_slice(Imf::HALF, pixels.data() + c, 4 * sizeof(half), dataset.manifest.width));
+                  Imf::Slice(Imf::HALF, reinterpret_cast<char*>(line.data() + c), 4 * sizeof(half), 0));
   Imf::OutputPart part(file, 0);
   part.setFrameBuffer(buffer);
-  part.writePixels(dataset.manifest.height);
+  for (std::size_t first = 0; first < preview.size(); first += line.size()) {
+    std::copy_n(preview.begin() + static_cast<std::ptrdiff_t>(first), line.size(), line.begin());
+    part.writePixels(1);
+  }
 }
 
 void write_hits(Imf::MultiPartOutputFile& file, const Dataset& dataset) {
   auto& hits = const_cast<Hits&>(dataset.hits);  // OpenEXR's slices are not const; writing leaves them alone
-  DeepPointers deep(hits, dataset.manifest.width, dataset.pixels());
-  for (std::size_t i = 0; i < dataset.pixels(); ++i)
-    deep.counts[i] = static_cast<unsigned>(hits.offset[i + 1] - hits.offset[i]);
-  deep.aim(hits);
+  std::vector<unsigned> counts(static_cast<std::size_t>(dataset.manifest.width));
+  DeepLine line(hits, dataset.manifest.width,
+                Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned), 0));
   Imf::DeepScanLineOutputPart part(file, 1);
-  part.setFrameBuffer(deep.buffer);
-  part.writePixels(dataset.manifest.height);
+  part.setFrameBuffer(line.buffer);
+  for (std::size_t first = 0; first < dataset.pixels(); first += counts.size()) {
+    for (std::size_t x = 0; x < counts.size(); ++x)
+      counts[x] = static_cast<unsigned>(hits.offset[first + x + 1] - hits.offset[first + x]);
+    line.aim(hits, first);
+    part.writePixels(1);
+  }
 }
 
 void write_rays(Imf::MultiPartOutputFile& file, const Dataset& dataset) {
@@ -141,18 +150,21 @@ void check_length(const std::string& path, std::uint64_t stored_bytes) {
 }
 
 void read_hits(Imf::MultiPartInputFile& file, int part_number, const std::string& path, Dataset& dataset) {
-  Imf::DeepScanLineInputPart part(file, part_number);
+  const int width = dataset.manifest.width, height = dataset.manifest.height;
   Hits& hits = dataset.hits;
-  DeepPointers deep(hits, dataset.manifest.width, dataset.pixels());
-  part.setFrameBuffer(deep.buffer);  // once: a second call would discard the counts
-  const int last = dataset.manifest.height - 1;
-  part.readPixelSampleCounts(0, last);
+  std::vector<unsigned> counts(dataset.pixels());
+  DeepLine line(hits, width, flat_slice(Imf::UINT, counts.data(), sizeof(unsigned), width));
+  Imf::DeepScanLineInputPart part(file, part_number);
+  part.setFrameBuffer(line.buffer);  // once: a second call would discard the counts
+  part.readPixelSampleCounts(0, height - 1);
   hits.offset.assign(dataset.pixels() + 1, 0);
-  for (std::size_t i = 0; i < dataset.pixels(); ++i) hits.offset[i + 1] = hits.offset[i] + deep.counts[i];
+  std::inclusive_scan(counts.begin(), counts.end(), hits.offset.begin() + 1, std::plus<>(), std::uint64_t{0});
   check_length(path, hits.count() * std::tuple_size_v<decltype(kHitChannels)> * sizeof(float));
   for_each_channel(hits, kHitChannels, [&](const auto&, auto& column) { column.resize(hits.count()); });
-  deep.aim(hits);
-  part.readPixels(0, last);
+  for (int y = 0; y < height; ++y) {
+    line.aim(hits, static_cast<std::size_t>(y) * static_cast<std::size_t>(width));
+    part.readPixels(y);
+  }
 }
 
 void read_rays(Imf::MultiPartInputFile& file, int part_number, Dataset& dataset) {
@@ -218,28 +230,21 @@ auto with_file(const std::string& path, Read&& read) {
 }  // namespace
 
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview) {
-  const std::string beside = path + ".part-" + std::to_string(::getpid());
   try {
-    // Our own stream: OpenEXR's destructors swallow what goes wrong when the last bytes are written.
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    if (!out) throw WorkError(path, "cannot write there");
+    WholeFile whole(path);
     {
+      // Our own stream: OpenEXR's destructors swallow what goes wrong when the last bytes are written.
       const auto headers = make_headers(dataset);
-      Imf::StdOFStream stream(out, beside.c_str());
+      Imf::StdOFStream stream(whole.stream(), path.c_str());
       Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()));
       write_preview(file, dataset, preview);
       write_hits(file, dataset);
       write_rays(file, dataset);
     }
-    out.close();
-    if (!out) throw WorkError(path, "cannot write all of it (is the disk full?)");
-    if (std::rename(beside.c_str(), path.c_str()) != 0)
-      throw WorkError(path, "cannot rename the finished file");
+    whole.finish();
   } catch (const WorkError&) {
-    std::remove(beside.c_str());
     throw;
   } catch (const std::exception& error) {
-    std::remove(beside.c_str());
     throw WorkError(path, std::string("cannot write: ") + error.what());
   }
 }

@@ -80,13 +80,13 @@ template <class S>
 void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, double lookback,
          BandRays& rays) {
   const Vec4<S> u = convert<S>(u_camera);
-  const auto width = static_cast<std::size_t>(camera.width);
+  int column = 0, line = first_line;  // of the next ray; the last ray is repeated to fill the last pack
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
     std::array<double, Lanes<S>::count> x{}, y{};
     for (std::size_t lane = 0; lane < x.size(); ++lane) {
-      const std::size_t pixel = std::min(i + lane, rays.count - 1);
-      x[lane] = static_cast<double>(pixel % width) + 0.5;
-      y[lane] = first_line + static_cast<double>(pixel / width) + 0.5;
+      x[lane] = column + 0.5;
+      y[lane] = line + 0.5;
+      if (i + lane + 1 < rays.count && ++column == camera.width) column = 0, ++line;
     }
     const Vec3<S> look = look_direction(camera, Lanes<S>::load(x.data()), Lanes<S>::load(y.data()));
     const Vec4<S> past = -seen_photon(u, look);
@@ -100,11 +100,11 @@ void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, dou
 template <class S, class Placing>
 std::size_t list_candidates(const Placing& placing, const Vec4<double>& event, BandRays& rays) {
   std::size_t listed = 0;
+  const auto launch = placing.launch(event);
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
-    RayStart<S> start{event, {}};
-    for (std::size_t c = 0; c < 4; ++c) start.k[c] = Lanes<S>::load(rays.k[c] + i);
+    const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
     std::array<bool, Lanes<S>::count> near{};
-    Lanes<S>::store(placing.ray(start).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i), near.data());
+    Lanes<S>::store(placing.ray(launch, k).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i), near.data());
     for (std::size_t lane = 0; lane < near.size(); ++lane)
       if (near[lane] && i + lane < rays.count) rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
   }
@@ -118,6 +118,7 @@ template <class S, class Placing, class Body, class Shape>
 void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, const Vec4<double>& event,
             double resolution, BandRays& rays) {
   constexpr int kRound = 4;
+  const auto launch = object.placing.launch(event);
   std::size_t listed = list_candidates<S>(object.placing, event, rays);
   for (std::size_t i = 0; i < listed; ++i) rays.lambda[rays.list[i]] = rays.taken[rays.list[i]] = 0;
   while (listed > 0) {
@@ -128,8 +129,8 @@ void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, co
       Search<S> search(limit);
       search.lambda = group.load(rays.lambda);
       search.steps = group.load(rays.taken);
-      advance(object.placing.ray(RayStart<S>{event, group.load_k(rays)}), object.shape, limit, S(resolution),
-              kRound, search);
+      advance(object.placing.ray(launch, group.load_k(rays)), object.shape, limit, S(resolution), kRound,
+              search);
       group.store(search.lambda, rays.lambda);
       group.store(search.steps, rays.taken);
       std::array<bool, Lanes<S>::count> active{}, met{}, given_up{};

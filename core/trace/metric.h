@@ -61,6 +61,13 @@ concept HasIsometry = requires(const M m, Vec4<double> x) {
   { m.from_origin(x, x) } -> std::same_as<Vec4<double>>;
 };
 
+/// A vector of the static tetrad, turned about e3 by e^{i angle}: what isometries do to it.
+template <class S>
+Vec4<S> turned_about_e3(const Complex<double>& turn, const Vec4<S>& k) {
+  const Complex<S> w = Complex<S>{S(turn.re), S(turn.im)} * Complex<S>{k[1], k[2]};
+  return {{k[0], w.re, w.im, k[3]}};
+}
+
 /// The derivatives d_k g_ij, by dual numbers: result[k][i][j].
 template <Metric M, class S>
 std::array<Matrix4<S>, 4> metric_derivatives(const M& metric, const Vec4<S>& x) {

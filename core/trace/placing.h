@@ -7,13 +7,6 @@
 
 NULLCONE_KERNEL_BEGIN
 
-/// Past-directed rays from one event: the tangent -k in the static tetrad there, a lane a ray.
-template <class S>
-struct RayStart {
-  Vec4<double> event;
-  Vec4<S> k;
-};
-
 /// For the search: an object at rest in the chart, or in the chart that the isometry of its worldline's event
 /// makes.
 template <Metric M>
@@ -50,20 +43,25 @@ struct RestPlacing {
         out.clearance = select(distance > S(1.5 * placing->ball),
                                min((distance - S(placing->ball)) / out.slope_max, out.valid), S(0.0));
       }
-      const Matrix3<S> rows = {convert<S>(placing->axes[0]), convert<S>(placing->axes[1]),
-                               convert<S>(placing->axes[2])};
+      const auto rows = convert<S>(placing->axes);
       out.X = rows * out.X;
       out.slope = rows * out.slope;
       return out;
     }
   };
+  /// What all rays from one event have in common: the event in the object's chart, and how the tetrad turns.
+  struct Launch {
+    Vec4<double> start;
+    Complex<double> turn;
+  };
+  Launch launch(const Vec4<double>& event) const {
+    if (!local) return {event, {1, 0}};
+    return {metric.to_origin(place, event), metric.turn(place, event)};
+  }
+  /// The ray with past-directed tangent k (static tetrad) at the event.
   template <class S>
-  Ray<S> ray(const RayStart<S>& start) const {
-    if (!local) return {this, metric.path(convert<S>(start.event), start.k)};
-    const auto turn = metric.turn(place, start.event);
-    const Complex<S> w = Complex<S>{S(turn.re), S(turn.im)} * Complex<S>{start.k[1], start.k[2]};
-    const Vec4<S> k = {{start.k[0], w.re, w.im, start.k[3]}};
-    return {this, metric.path(convert<S>(metric.to_origin(place, start.event)), k)};
+  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
+    return {this, metric.path(convert<S>(launch.start), turned_about_e3(launch.turn, k))};
   }
 };
 
@@ -78,7 +76,8 @@ struct MovingPlacing {
   struct Ray {
     const MovingPlacing* placing;
     decltype(std::declval<M>().path(Vec4<S>{}, Vec4<S>{})) path;
-    decltype(std::declval<MovingPlacing>().orbit.ray(Vec4<double>{}, Vec4<S>{})) around;
+    decltype(std::declval<MovingPlacing>().orbit.ray(
+        std::declval<MovingPlacing>().orbit.launch(Vec4<double>{}), Vec4<S>{})) around;
 
     S clearance(const S& lambda) const {
       S tau;
@@ -124,9 +123,14 @@ struct MovingPlacing {
       }
     }
   };
+  struct Launch {
+    Vec4<double> start;
+    decltype(std::declval<MovingPlacing>().orbit.launch(Vec4<double>{})) around;
+  };
+  Launch launch(const Vec4<double>& event) const { return {event, orbit.launch(event)}; }
   template <class S>
-  Ray<S> ray(const RayStart<S>& start) const {
-    return {this, frame.metric.path(convert<S>(start.event), start.k), orbit.ray(start.event, start.k)};
+  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
+    return {this, frame.metric.path(convert<S>(launch.start), k), orbit.ray(launch.around, k)};
   }
 };
 
@@ -161,7 +165,7 @@ struct ChartBody {
   template <class S>
   std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
     const Vec4<S> x = event - convert<S>(place);
-    const Matrix3<S> rows = {convert<S>(axes[0]), convert<S>(axes[1]), convert<S>(axes[2])};
+    const auto rows = convert<S>(axes);
     return {sqrt(metric.g(event)[0][0]) * x[0] - tau, rows * spatial(x)};
   }
   template <class S>

@@ -1,16 +1,22 @@
 #include "core/trace/trace_scene.h"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <cstdio>
 #include <ctime>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/version.h"
+#include "core/record/memory.h"
 
 namespace nullcone {
 
@@ -34,9 +40,17 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-/// Appends a band to the columns, in floats.
-void gather(const TracedBand& band, Hits& hits, Rays& rays) {
+/// What a dataset keeps of a band.
+struct BandColumns {
+  Hits hits;
+  Rays rays;
+};
+
+BandColumns to_columns(const TracedBand& band) {
   const auto to_float = [](double x) { return static_cast<float>(x); };
+  BandColumns out;
+  Hits& hits = out.hits;
+  for_each_channel(hits, kHitChannels, [&](const auto&, auto& column) { column.reserve(band.hits.size()); });
   std::size_t next = 0;
   for (std::size_t pixel = 0; pixel < band.rays.size(); ++pixel) {
     for (; next < band.hits.size() && band.hits[next].pixel == pixel; ++next) {
@@ -54,16 +68,86 @@ void gather(const TracedBand& band, Hits& hits, Rays& rays) {
     }
     hits.offset.push_back(hits.Z.size());
     const RayRecord& ray = band.rays[pixel];
-    rays.status.push_back(ray.status);
-    rays.steps.push_back(ray.steps);
-    rays.error.push_back(ray.error);
-    rays.drift.push_back(ray.drift);
+    out.rays.status.push_back(ray.status);
+    out.rays.steps.push_back(ray.steps);
+    out.rays.error.push_back(ray.error);
+    out.rays.drift.push_back(ray.drift);
   }
+  return out;
+}
+
+/// Room for one crossing a pixel. Pages that are never touched cost nothing.
+void reserve(Dataset& dataset) {
+  dataset.hits.offset.reserve(dataset.pixels() + 1);
+  for_each_channel(dataset.hits, kHitChannels,
+                   [&](const auto&, auto& column) { column.reserve(dataset.pixels()); });
+  for_each_channel(dataset.rays, kRayChannels,
+                   [&](const auto&, auto& column) { column.reserve(dataset.pixels()); });
+}
+
+template <class Table, class Channels>
+void append(Table& to, const Table& from, const Channels& channels) {
+  for_each_channel(to, channels, [&](const auto& channel, auto& column) {
+    const auto& more = from.*channel.column;
+    column.insert(column.end(), more.begin(), more.end());
+  });
+}
+
+void append(Dataset& dataset, const BandColumns& band) {
+  const std::size_t before = dataset.hits.count();
+  for (std::size_t i = 1; i < band.hits.offset.size(); ++i)
+    dataset.hits.offset.push_back(before + band.hits.offset[i]);
+  append(dataset.hits, band.hits, kHitChannels);
+  append(dataset.rays, band.rays, kRayChannels);
+}
+
+TracedBand trace_one(const Tracer& tracer, const Camera& camera, int first_line) {
+  const int lines = std::min(kBandLines, camera.height - first_line);
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(lines);
+  TracedBand out{std::vector<HitRecord>(pixels), std::vector<RayRecord>(pixels)};
+  out.hits.resize(tracer.trace_band(first_line, lines, {out.hits, out.rays}));
+  return out;
+}
+
+/// Traces every band on `threads` threads. `convert` makes of each what shall be kept of it, in the thread
+/// that traced it; `take` gets these in order, one at a time. Only a few bands are in flight at once, so
+/// memory is bounded by what `take` keeps. Returns the processor time used.
+template <class Convert, class Take>
+double for_each_band(const Tracer& tracer, const Camera& camera, int threads, const Progress& progress,
+                     const Convert& convert, const Take& take) {
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  std::atomic<long> nanoseconds = 0;
+  int next_line = 0, done_lines = 0;
+  const auto first_lines = tbb::make_filter<void, int>(  // named, so that the types below can be read
+      tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
+        if (next_line >= camera.height) flow.stop();
+        return std::exchange(next_line, next_line + kBandLines);
+      });
+  using Kept = std::shared_ptr<decltype(convert(TracedBand{}))>;
+  const auto traced = tbb::make_filter<int, Kept>(tbb::filter_mode::parallel, [&](int first_line) {
+    const double start = thread_seconds();
+    auto kept = std::make_shared<typename Kept::element_type>(convert(trace_one(tracer, camera, first_line)));
+    nanoseconds += static_cast<long>(1e9 * (thread_seconds() - start));
+    return kept;
+  });
+  const auto taken = tbb::make_filter<Kept, void>(tbb::filter_mode::serial_in_order, [&](const Kept& kept) {
+    take(std::move(*kept));
+    done_lines = std::min(done_lines + kBandLines, camera.height);
+    const auto width = static_cast<std::size_t>(camera.width);
+    if (progress)
+      progress(width * static_cast<std::size_t>(done_lines), width * static_cast<std::size_t>(camera.height));
+  });
+  tbb::parallel_pipeline(in_flight, first_lines & traced & taken);
+  return 1e-9 * static_cast<double>(nanoseconds.load());
 }
 
 }  // namespace
 
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place) {
+  check_memory(scene.camera, available_memory(), place);
   const std::vector<double> parameters = parameters_of(spacetime, scene);
   if (scene.max_lookback == 0) scene.max_lookback = spacetime.default_lookback(parameters);
   Unfit unfit{};
@@ -74,31 +158,30 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   throw InputError(place + ": /objects/" + std::to_string(unfit.object), message);
 }
 
+void check_memory(const Camera& camera, std::uint64_t available, const std::string& place) {
+  const std::uint64_t needed =
+      dataset_bytes(static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height), 1);
+  if (needed <= available) return;
+  const auto gibibytes = [](std::uint64_t bytes) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2f GiB", std::ldexp(static_cast<double>(bytes), -30));
+    return std::string(text.data());
+  };
+  throw InputError(place + ": /camera/resolution", "the dataset would take up to " + gibibytes(needed) +
+                                                       " of memory, but only " + gibibytes(available) +
+                                                       " are available; expected fewer pixels");
+}
+
 std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads,
                                     const Progress& progress, double& core_seconds) {
-  const int bands = (camera.height + kBandLines - 1) / kBandLines;
-  const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
-  std::vector<TracedBand> out(static_cast<std::size_t>(bands));
-  std::atomic<std::size_t> done = 0;
-  std::atomic<long> nanoseconds = 0;
-  const auto trace_one = [&](int band) {
-    const double start = thread_seconds();
-    const int first = band * kBandLines, lines = std::min(kBandLines, camera.height - first);
-    TracedBand& result = out[static_cast<std::size_t>(band)];
-    const std::size_t pixels = width * static_cast<std::size_t>(lines);
-    result.hits.resize(pixels);
-    result.rays.resize(pixels);
-    result.hits.resize(tracer.trace_band(first, lines, {result.hits, result.rays}));
-    result.hits.shrink_to_fit();
-    nanoseconds += static_cast<long>(1e9 * (thread_seconds() - start));
-    const std::size_t now = done += pixels;
-    if (progress) progress(now, width * height);
-  };
-  std::optional<tbb::global_control> limit;
-  if (threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::parallel_for(0, bands, trace_one);
-  core_seconds = 1e-9 * static_cast<double>(nanoseconds.load());
+  std::vector<TracedBand> out;
+  core_seconds = for_each_band(
+      tracer, camera, threads, progress,
+      [](TracedBand&& band) {
+        band.hits.shrink_to_fit();
+        return std::move(band);
+      },
+      [&](TracedBand&& band) { out.push_back(std::move(band)); });
   return out;
 }
 
@@ -107,10 +190,11 @@ Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& 
   const auto tracer = prepare_scene(spacetime, scene, place);
   Dataset dataset;
   Manifest& manifest = dataset.manifest;
-  for (const TracedBand& band : trace_bands(*tracer, scene.camera, threads, progress, manifest.core_seconds))
-    gather(band, dataset.hits, dataset.rays);
   manifest.width = scene.camera.width;
   manifest.height = scene.camera.height;
+  reserve(dataset);
+  manifest.core_seconds = for_each_band(*tracer, scene.camera, threads, progress, to_columns,
+                                        [&](const BandColumns& band) { append(dataset, band); });
   manifest.scene = scene.canonical;
   manifest.scene_sha256 = scene.sha256;
   manifest.metric = scene.metric;

@@ -2,14 +2,21 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 
 #include "core/record/dataset.h"
 #include "core/trace/spacetime.h"
 
 namespace nullcone {
 
-/// Called now and then, from any thread, with the number of finished and of all rays.
+/// Called with the number of finished and of all rays after each band, in order, by one thread at a time.
+/// What it throws ends the tracing.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
+
+/// What a Progress may throw when somebody asked to stop.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
+};
 
 /// Full-precision records of a whole picture, for tests; the dataset keeps floats of them.
 struct TracedBand {
@@ -18,8 +25,12 @@ struct TracedBand {
 };
 
 /// Chooses max_lookback where the scene leaves it open, and makes the scene ready. Throws InputError (with
-/// the object's JSON pointer) for what the spacetime cannot hold.
+/// the JSON pointer) for what the spacetime or the memory cannot hold.
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place);
+
+/// Refuses a picture whose dataset would not fit into so many bytes if every pixel were hit: better now than
+/// after hours. Throws InputError.
+void check_memory(const Camera& camera, std::uint64_t available, const std::string& place);
 
 /// Traces every band. The numbers do not depend on the number of threads (0: as many as there are cores).
 std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads,
