@@ -7,6 +7,12 @@ NULLCONE_KERNEL_BEGIN
 
 using M = NULLCONE_METRIC;
 
+#ifdef NULLCONE_ONE_LANE
+using Wide = double;  // the same numbers, one ray at a time: for comparison
+#else
+using Wide = Pack;
+#endif
+
 M make_metric(std::span<const double> values) {
   M metric;
   std::size_t i = 0;
@@ -85,7 +91,7 @@ class SceneTracer final : public Tracer {
             place(metric_, object.placing, Quad{0.5 * object.shape.edges[0], 0.5 * object.shape.edges[1]});
       else
         objects_[i] = place(metric_, object.placing, Sphere{object.shape.radius, object.shape.dome});
-      if (!std::visit([&](const auto& placed) { return check(placed, object.shape, unfit); }, objects_[i]))
+      if (!with_type(objects_[i], [&](const auto& placed) { return check(placed, object.shape, unfit); }))
         return false;
     }
     return true;
@@ -94,12 +100,12 @@ class SceneTracer final : public Tracer {
   std::size_t trace_band(int first_line, int lines, const BandRoom& room) const override {
     const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera_.width);
     BandRays rays(pixels);
-    aim<Pack>(camera_, u_camera_, first_line, lookback_, rays);
+    aim<Wide>(camera_, u_camera_, first_line, lookback_, rays);
     for (std::size_t i = 0; i < count_; ++i) {
       const auto number = static_cast<std::uint32_t>(i + 1);
       if (number == sky_) continue;
-      std::visit([&](const auto& placed) { search<Pack>(placed, number, observation_, resolution_, rays); },
-                 objects_[i]);
+      with_type(objects_[i],
+                [&](const auto& placed) { search<Wide>(placed, number, observation_, resolution_, rays); });
     }
     return write(rays, room);
   }
@@ -138,24 +144,22 @@ class SceneTracer final : public Tracer {
     for (std::size_t i = 0; i < rays.count; ++i)
       if (rays.nearest[i] == number) rays.list[listed++] = static_cast<std::uint32_t>(i);
     const double origin = origins_[number - 1];
-    for (std::size_t i = 0; i < listed; i += Lanes<Pack>::count) {
-      const Group<Pack> group(rays.list.get(), i, listed);
-      const Recorded<Pack> r = std::visit(
-          [&](const auto& placed) {
-            return record(metric_, placed, observation_, group.load_k(rays), group.load(rays.limit));
-          },
-          objects_[number - 1]);
+    for (std::size_t i = 0; i < listed; i += Lanes<Wide>::count) {
+      const Group<Wide> group(rays.list.get(), i, listed);
+      const Recorded<Wide> r = with_type(objects_[number - 1], [&](const auto& placed) {
+        return record(metric_, placed, observation_, group.load_k(rays), group.load(rays.limit));
+      });
       for (std::size_t lane = 0; lane < group.filled; ++lane)
         hits[place[group.ray[lane]]] = {static_cast<std::uint32_t>(group.ray[lane]),
                                         number,
-                                        static_cast<std::uint32_t>(r.order.get(lane)),
-                                        r.Z.get(lane),
-                                        r.u.get(lane),
-                                        r.v.get(lane),
-                                        r.shift.get(lane),
-                                        r.t.get(lane),
-                                        r.tau.get(lane) - origin,
-                                        r.mu.get(lane)};
+                                        static_cast<std::uint32_t>(Lanes<Wide>::get(r.order, lane)),
+                                        Lanes<Wide>::get(r.Z, lane),
+                                        Lanes<Wide>::get(r.u, lane),
+                                        Lanes<Wide>::get(r.v, lane),
+                                        Lanes<Wide>::get(r.shift, lane),
+                                        Lanes<Wide>::get(r.t, lane),
+                                        Lanes<Wide>::get(r.tau, lane) - origin,
+                                        Lanes<Wide>::get(r.mu, lane)};
     }
   }
 

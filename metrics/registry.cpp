@@ -6,8 +6,9 @@ namespace nullcone {
 
 // Adding a spacetime: its header, a line in each of these two lists, and one in CMakeLists.txt.
 #ifdef NULLCONE_ALL_ISAS
-#define NULLCONE_KERNELS(f) \
-  f(minkowski, avx512) f(minkowski, avx2) f(minkowski, sse2) f(goedel, avx512) f(goedel, avx2) f(goedel, sse2)
+#define NULLCONE_KERNELS(f)                                                                          \
+  f(minkowski, avx512) f(minkowski, avx2) f(minkowski, sse2) f(minkowski, onelane) f(goedel, avx512) \
+      f(goedel, avx2) f(goedel, sse2) f(goedel, onelane)
 #else
 #define NULLCONE_KERNELS(f) f(minkowski, sse2) f(goedel, sse2)
 #endif

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -71,6 +72,7 @@ class DatasetFile : public ::testing::Test {
   std::vector<std::string> listing() const {
     std::vector<std::string> out;
     for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename());
+    std::sort(out.begin(), out.end());
     return out;
   }
   std::string whole_file() {
@@ -80,6 +82,7 @@ class DatasetFile : public ::testing::Test {
   /// What reading these bytes complains about; empty if they give a dataset (which is then judged).
   std::string complaint(const std::string& bytes) {
     const std::string place = folder / "b.exr";
+    fs::remove(place);  // cheaper than to truncate: ext4 then waits for the disk
     std::ofstream(place, std::ios::binary) << bytes;
     return complaint_of(place);
   }

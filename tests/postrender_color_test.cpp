@@ -96,7 +96,7 @@ TEST(BlackBodyTable, interpolates_within_3e_5_of_the_luminance) {
   // rest is float. 13 temperatures an interval would repeat themselves: steps incommensurable with the nodes
   // do not.
   double worst = 0;
-  for (double T = BlackBodyTable::kColdest_K; T < 3e8; T *= 1.000331) {
+  for (double T = kColdest_K; T < 3e8; T *= 1.000331) {
     const Xyz exact_xyz = black_body_xyz(T);
     const auto exact = linear_srgb(exact_xyz);
     const Rgb found = BlackBodyTable::instance().color_cd_m2(T);

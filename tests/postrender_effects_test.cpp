@@ -26,7 +26,7 @@ TEST(Effects, agree_with_direct_integration) {
       for (const bool doppler : {false, true})
         for (const bool searchlight : {false, true}) {
           const auto expected = integrated(T, static_cast<double>(g), doppler, searchlight);
-          const Rgb found = BlackBodySpectrum(T, {doppler, searchlight})({1, 1, 1}, g);
+          const Rgb found = seen(BlackBodySpectrum{{doppler, searchlight}, T}, {1, 1, 1}, g);
           const double scale = std::max({std::abs(expected[0]), expected[1], expected[2]});
           // 3e-5: the table (see its own test).
           EXPECT_NEAR(static_cast<double>(found.r), expected[0], 3e-5 * scale)
@@ -40,21 +40,21 @@ TEST(Effects, agree_with_direct_integration) {
 
 TEST(Effects, display_colors_are_beamed_but_not_shifted) {
   const Rgb c{0.5f, 0.25f, 0.125f};
-  EXPECT_EQ((DisplaySpectrum{{true, false}}(c, 2.0f)), c);
-  EXPECT_EQ((DisplaySpectrum{{false, false}}(c, 2.0f)), c);
-  EXPECT_EQ((DisplaySpectrum{{false, true}}(c, 2.0f)), 16.0f * c);
-  EXPECT_EQ((DisplaySpectrum{{true, true}}(c, 0.5f)), 0.0625f * c);
+  EXPECT_EQ(seen(DisplaySpectrum{{true, false}}, c, 2.0f), c);
+  EXPECT_EQ(seen(DisplaySpectrum{{false, false}}, c, 2.0f), c);
+  EXPECT_EQ(seen(DisplaySpectrum{{false, true}}, c, 2.0f), 16.0f * c);
+  EXPECT_EQ(seen(DisplaySpectrum{{true, true}}, c, 0.5f), 0.0625f * c);
 }
 
 TEST(Effects, senseless_shifts_are_black) {
   for (const float g : {0.0f, -1.0f, std::nanf(""), INFINITY})
-    EXPECT_EQ(BlackBodySpectrum(5000, {})({1, 1, 1}, g), Rgb{});
+    EXPECT_EQ(seen(BlackBodySpectrum{{}, 5000}, {1, 1, 1}, g), Rgb{});
 }
 
 TEST(Effects, a_texture_filters_a_black_body) {
-  const BlackBodySpectrum sun(5762, {});
-  const Rgb bare = sun({1, 1, 1}, 1), seen = sun({0.5f, 0, 1}, 1);
-  EXPECT_EQ(seen, (Rgb{0.5f * bare.r, 0, bare.b}));
+  const BlackBodySpectrum sun{{}, 5762};
+  const Rgb bare = seen(sun, {1, 1, 1}, 1), filtered = seen(sun, {0.5f, 0, 1}, 1);
+  EXPECT_EQ(filtered, (Rgb{0.5f * bare.r, 0, bare.b}));
 }
 
 TEST(Effects, white_is_the_luminance_shown_as_one) {

@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/record/dataset.h"
+#include "postrender/develop.h"
 #include "postrender/look.h"
 #include "postrender/renderer.h"
 
@@ -81,6 +82,38 @@ inline Look look_of(const std::string& text, const Manifest& manifest, const std
 inline Image picture(Dataset data, const std::string& text, const std::string& folder = "") {
   const Look look = look_of(text, data.manifest, folder);
   return Renderer(std::move(data)).render(look);
+}
+
+/// What is seen of one colour with the frequency ratio g, the same with every instruction set.
+inline Rgb seen(const Spectrum& spectrum, Rgb color, float g) {
+  TestHit hit;
+  hit.shift = g;
+  const Dataset data = one_pixel({hit});
+  const Shading shading = {{{ColorTexture{color}, spectrum}}, {{0, 0, {}}}, {}};
+  const bool physical = has_physical(shading);
+  Rgb first;
+  for (const Kernel* kernel : kernels()) {
+    Rgbx line_display, line_physical;
+    LineShader(data, shading, *kernel).shade(0, &line_display, &line_physical);
+    const Rgb found = physical ? line_physical : line_display;
+    if (kernel == kernels().front()) first = found;
+    EXPECT_EQ(found, first) << kernel->isa;
+  }
+  return first;
+}
+
+/// One colour, developed with every instruction set alike.
+inline Image developed(Rgb display, const DevelopLook& look) {
+  Image first;
+  for (const Kernel* kernel : kernels()) {
+    const Rgbx line = display;
+    Image image;
+    set_size(image, 1, 1, {});
+    LineDeveloper(look, *kernel).develop(&line, nullptr, 0, 1, image);
+    if (kernel == kernels().front()) first = image;
+    EXPECT_EQ(image.display, first.display) << kernel->isa;
+  }
+  return first;
 }
 
 /// What `f` complains about, or "" when it does not throw an InputError.

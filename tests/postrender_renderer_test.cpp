@@ -1,4 +1,5 @@
 // The renderer: compositing, independence of threads, reuse, and records that do not fit.
+#include <OpenImageIO/imageio.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -79,6 +80,30 @@ TEST(Renderer, pictures_do_not_depend_on_threads) {
   EXPECT_NE(one.display.front(), one.display.back());
 }
 
+TEST(Renderer, pictures_do_not_depend_on_the_instruction_set) {
+  TestFolder folder;
+  const std::string name = folder.file("map.png");
+  const auto out = OIIO::ImageOutput::create("png");
+  ASSERT_TRUE(out->open(name, OIIO::ImageSpec(13, 7, 3, OIIO::TypeDesc::UINT8)));
+  std::vector<std::uint8_t> bytes(13 * 7 * 3);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 37);
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, bytes.data()));
+  out->close();
+  nlohmann::json look = nlohmann::json::parse(kBusyLook);
+  look["objects"]["near"]["texture"] = {{"type", "image"}, {"file", "map.png"}};
+  Image first;
+  for (const Kernel* kernel : kernels()) {
+    Renderer renderer(busy(151, 37), *kernel);
+    Image image;
+    renderer.render(look_of(look.dump(), renderer.dataset().manifest, folder.path()), {true, true, true},
+                    image);
+    if (kernel == kernels().front()) first = image;
+    EXPECT_EQ(image.exposed, first.exposed) << kernel->isa;
+    EXPECT_EQ(image.display, first.display) << kernel->isa;
+    EXPECT_EQ(image.encoded, encode_srgb8(image.display)) << kernel->isa;
+  }
+}
+
 TEST(Renderer, what_it_keeps_never_shows) {
   // A renderer that has shown other looks gives the same picture as a new one.
   Renderer renderer(busy(40, 40));
@@ -88,6 +113,8 @@ TEST(Renderer, what_it_keeps_never_shows) {
                                           R"({"exposure":{"ev":2}})",
                                           R"({"background":[1,1,1]})",
                                           R"({"effects":{"searchlight":false}})",
+                                          R"({"effects":{"searchlight":false},"exposure":{"ev":1}})",
+                                          R"({"effects":{"searchlight":false},"exposure":{"ev":2}})",
                                           kBusyLook};
   for (const std::string& text : texts)
     EXPECT_EQ(renderer.render(look_of(text, manifest)).display, picture(busy(40, 40), text).display) << text;

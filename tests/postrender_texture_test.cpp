@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "postrender/color.h"
-#include "postrender/footprint.h"
 #include "postrender/texture_file.h"
 #include "tests/postrender_fixture.h"
 
@@ -142,9 +141,36 @@ TEST(Mipmaps, keep_the_mean_whatever_the_size) {
     full.texels.push_back({static_cast<float>(i % 11), 1, 0});
     mean += static_cast<float>(i % 11) / 35;
   }
+  const std::vector<TextureLevel> levels = halvings(full);
+  ASSERT_EQ(levels.size(), 3u);  // 7 x 5, 3 x 2, 1 x 1
+  expect_color(levels.back().texels[0], {mean, 1, 0}, 1e-5f);
   const Pyramid pyramid = make_pyramid(full);
-  ASSERT_EQ(pyramid.levels.size(), 3u);  // 7 x 5, 3 x 2, 1 x 1
-  expect_color(pyramid.levels.back().texels[0], {mean, 1, 0}, 1e-5f);
+  ASSERT_EQ(pyramid.levels.size(), 3u);
+  expect_color(pyramid.texel(2, 0, 0), {mean, 1, 0}, mean / 2048);  // half floats
+}
+
+TEST(Mipmaps, hold_every_texel_where_it_is_looked_for) {
+  TextureLevel full{13, 6, {}};
+  for (int i = 0; i < 13 * 6; ++i) full.texels.push_back({static_cast<float>(i), -0.25f, 1e-3f});
+  const Pyramid pyramid = make_pyramid(full);
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 13; ++i) {
+      EXPECT_EQ(pyramid.texel(0, i, j).r, full.texel(i, j).r);
+      EXPECT_EQ(pyramid.texel(0, i, j).g, -0.25f);
+      EXPECT_NEAR(pyramid.texel(0, i, j).b, 1e-3f, 1e-3f / 2048);
+    }
+}
+
+TEST(Mipmaps, range_from_very_bright_to_very_dark) {
+  for (const float brightest : {1e-12f, 1.0f, 65504.0f, 1e9f}) {
+    const Pyramid pyramid =
+        make_pyramid({2, 1, {{brightest, brightest / 1e6f, 0}, {NAN, INFINITY, -brightest}}});
+    expect_color(pyramid.texel(0, 0, 0), {brightest, brightest / 1e6f, 0}, brightest / 2048);
+    EXPECT_NEAR(pyramid.texel(0, 0, 0).g, brightest / 1e6f, brightest / 1e6f / 2048);
+    EXPECT_EQ(pyramid.texel(0, 1, 0).r, 0);
+    EXPECT_GE(pyramid.texel(0, 1, 0).g, brightest);
+    EXPECT_NEAR(pyramid.texel(0, 1, 0).b, -brightest, brightest / 2048);
+  }
 }
 
 TEST(Footprints, cross_the_seam_but_not_the_edge_between_images) {
@@ -156,10 +182,21 @@ TEST(Footprints, cross_the_seam_but_not_the_edge_between_images) {
     hit.order = column == 3 ? 1 : 0;
     return std::vector{hit};
   });
-  const FootprintEstimate estimate(data);
-  EXPECT_NEAR(estimate(1, 1, 0).u_right, 0.04f, 1e-6f);
-  EXPECT_NEAR(std::abs(estimate(2, 2, 0).u_right), 0.04f, 1e-6f);
-  EXPECT_EQ(estimate(3, 3, 0).u_right, 0);  // no neighbour counts
+  const Hits& hits = data.hits;
+  const Layer line = {hits.id.data(), hits.order.data(), hits.u.data(),
+                      hits.v.data(),  hits.shift.data(), hits.A.data()};
+  const std::vector<std::uint32_t> nothing(4);
+  Layer outside = line;
+  outside.id = nothing.data();
+  for (const Kernel* kernel : kernels()) {
+    std::vector<float> u_right(4), v_right(4), u_down(4, 1.0f), v_down(4, 1.0f), scratch(15);
+    kernel->footprints({outside, line, outside}, 4,
+                       {u_right.data(), v_right.data(), u_down.data(), v_down.data()}, scratch.data());
+    EXPECT_NEAR(std::abs(u_right[1]), 0.04f, 1e-6f);
+    EXPECT_NEAR(std::abs(u_right[2]), 0.04f, 1e-6f);
+    EXPECT_EQ(u_right[3], 0);  // no neighbour counts
+    EXPECT_EQ(u_down, std::vector<float>(4));
+  }
 }
 
 std::string board(const std::string& rest) {

@@ -21,10 +21,28 @@ struct SinCos {
   S sin, cos;
 };
 
+/// Sine and cosine of a pack. xsimd's own functions go over to a scalar routine for large arguments, which
+/// the linker would share between instruction sets; so the reduction is done here, in three parts of pi/2 (33
+/// bits each; exact up to 2^20 quadrants, and good to a rounding of x beyond), and xsimd's polynomials do the
+/// rest.
+template <class A>
+SinCos<xsimd::batch<double, A>> reduced_sincos(const xsimd::batch<double, A>& x) {
+  using B = xsimd::batch<double, A>;
+  constexpr double kPart1 = 0x1.921fb544p+0, kPart2 = 0x1.0b4611a6p-34, kPart3 = 0x1.3198a2e037073p-69;
+  const B quadrants = xsimd::floor(x * B(0.63661977236758134308) + B(0.5));
+  const B r = ((x - quadrants * B(kPart1)) - quadrants * B(kPart2)) - quadrants * B(kPart3);
+  const B quadrant = quadrants - B(4.0) * xsimd::floor(quadrants * B(0.25));  // 0 to 3
+  const B z = r * r, s = xsimd::kernel::detail::sin_eval(z, r), c = xsimd::kernel::detail::cos_eval(z);
+  const auto odd = (quadrant == B(1.0)) | (quadrant == B(3.0));
+  const B sine = xsimd::select(odd, c, s), cosine = xsimd::select(odd, s, c);
+  return {xsimd::select(quadrant >= B(2.0), -sine, sine),
+          xsimd::select((quadrant == B(1.0)) | (quadrant == B(2.0)), -cosine, cosine)};
+}
+
 // One lane: plain double takes lane 0 of the SSE2 functions, so that it agrees with every pack to the last
 // bit.
 inline SinCos<double> sincos(double x) {
-  const auto [s, c] = xsimd::sincos(OneLane(x));
+  const auto [s, c] = reduced_sincos(OneLane(x));
   return {s.get(0), c.get(0)};
 }
 inline double atan2(double y, double x) { return xsimd::atan2(OneLane(y), OneLane(x)).get(0); }
@@ -53,10 +71,7 @@ inline long double min(long double a, long double b) { return b < a ? b : a; }
 inline long double select(bool choose, long double a, long double b) { return choose ? a : b; }
 
 // Packs.
-inline SinCos<Pack> sincos(const Pack& x) {
-  const auto [s, c] = xsimd::sincos(x);
-  return {s, c};
-}
+inline SinCos<Pack> sincos(const Pack& x) { return reduced_sincos(x); }
 inline Pack atan2(const Pack& y, const Pack& x) { return xsimd::atan2(y, x); }
 inline Pack exp(const Pack& x) { return xsimd::exp(x); }
 inline Pack log(const Pack& x) { return xsimd::log(x); }
@@ -79,6 +94,7 @@ struct Lanes {
   static S load(const double* from) { return S(*from); }
   static void store(S x, double* to) { *to = static_cast<double>(x); }
   static void store(bool mask, bool* to) { *to = mask; }
+  static double get(S x, std::size_t) { return static_cast<double>(x); }
 };
 template <>
 struct Lanes<Pack> {
@@ -87,6 +103,7 @@ struct Lanes<Pack> {
   static Pack load(const double* from) { return Pack::load_unaligned(from); }
   static void store(const Pack& x, double* to) { x.store_unaligned(to); }
   static void store(const Mask& mask, bool* to) { mask.store_unaligned(to); }
+  static double get(const Pack& x, std::size_t lane) { return x.get(lane); }
 };
 template <class S>
 using Mask = typename Lanes<S>::Mask;

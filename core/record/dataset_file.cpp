@@ -229,6 +229,8 @@ auto with_file(const std::string& path, Read&& read) {
 
 }  // namespace
 
+void check_place(const std::string& path) { const WholeFile created_and_removed(path); }
+
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview) {
   try {
     WholeFile whole(path);

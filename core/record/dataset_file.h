@@ -11,7 +11,11 @@ namespace nullcone {
 /// The flat picture that any EXR viewer shows first: linear R, G, B, A a pixel, four entries each.
 using Preview = std::vector<float>;
 
-/// Writes beside `path` and renames when complete; on failure nothing is left behind. Throws WorkError.
+/// Throws WorkError where no dataset can be written; removes what killed writers left there.
+void check_place(const std::string& path);
+
+/// Writes beside `path` and renames when complete and safe on the disk, also from a power cut; on failure the
+/// old file stays and nothing is left behind (see WholeFile). Throws WorkError.
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview);
 
 /// Reads a whole dataset. A foreign, truncated or newer file throws InputError with the reason; the numbers

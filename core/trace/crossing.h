@@ -89,7 +89,8 @@ Meeting<S> polish(const Path& path, const Body& body, const Shape& shape, const 
   const Vec4<S> start = path.at(found).event;
   S lambda = found, tau = local_time(body, start, body.first_guess(start)), least(kFar);
   Meeting<S> best{found, tau, {}};
-  for (int i = 0; i < 4; ++i) {
+  auto active = found == found;
+  for (int i = 0; i < 4 && any(active); ++i) {
     const PathPoint<S> P = path.at(lambda);
     const auto x = Vec4<D>::map([&](std::size_t c) {
       return D(P.event[c], Vec<S, 2>{{P.tangent[c], S(0.0)}});
@@ -98,16 +99,15 @@ Meeting<S> polish(const Path& path, const Body& body, const Shape& shape, const 
     const S wait = -(late.v / late.d[1]), tau_slope = -(late.d[0] / late.d[1]);  // to the right proper time
     const D value = shape.value(X);
     const S f = value.v + value.d[1] * wait, slope = value.d[0] + value.d[1] * tau_slope;
-    const auto better = abs(f) < least;
+    const auto better = active & (abs(f) < least);
     least = select(better, abs(f), least);
     best.lambda = select(better, lambda, best.lambda);
     best.tau = select(better, tau + wait, best.tau);
     for (std::size_t c = 0; c < 3; ++c) best.X[c] = select(better, X[c].v + X[c].d[1] * wait, best.X[c]);
     const S step = f / slope;
-    const auto small = better & (abs(step) < S(1e-3) * lambda);
-    lambda = select(small, best.lambda - step, best.lambda);
-    tau = select(small, best.tau - tau_slope * step, best.tau);
-    if (!any(small)) break;
+    active = better & (abs(step) < S(1e-3) * lambda);
+    lambda = select(active, best.lambda - step, best.lambda);
+    tau = select(active, best.tau - tau_slope * step, best.tau);
   }
   return best;
 }

@@ -24,6 +24,22 @@ using AnyPlaced =
                  Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
                  Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
 
+template <std::size_t kIndex, class Result, class Variant, class F>
+Result with_alternative(const Variant& object, F&& f) {
+  if constexpr (kIndex + 1 < std::variant_size_v<Variant>) {
+    if (object.index() != kIndex) return with_alternative<kIndex + 1, Result>(object, f);
+  }
+  return f(*std::get_if<kIndex>(&object));
+}
+
+/// Calls f with the object in its own type. (std::visit would bring code that instruction sets share.)
+template <class F, class... Types>
+decltype(auto) with_type(const std::variant<Types...>& object, F&& f) {
+  using First = std::variant_alternative_t<0, std::variant<Types...>>;
+  using Result = decltype(f(std::declval<const First&>()));
+  return with_alternative<0, Result>(object, f);
+}
+
 /// The rays of a band, and the nearest crossing found so far; structure of arrays, padded to whole packs.
 struct BandRays {
   std::size_t count = 0, padded = 0;

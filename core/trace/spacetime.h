@@ -35,7 +35,7 @@ struct BandRoom {
 /// A scene made ready for one kernel. Immutable: any number of threads may trace bands of it.
 class Tracer {
  public:
-  virtual ~Tracer() = default;
+  virtual ~Tracer();
   /// Traces `lines` (<= kBandLines) scan lines from `first_line` on; returns how many hits were written.
   virtual std::size_t trace_band(int first_line, int lines, const BandRoom& room) const = 0;
   /// Proper time that the channel `tau` of object number `object` (from 0) counts from.
@@ -62,7 +62,7 @@ struct NamedValue {
 /// parameters().
 class Spacetime {
  public:
-  virtual ~Spacetime() = default;
+  virtual ~Spacetime();
   virtual MetricDescription description() const = 0;
   virtual std::string_view isa() const = 0;
   virtual double default_lookback(std::span<const double> parameters) const = 0;

@@ -1,0 +1,97 @@
+// A ray's numbers depend on nothing but the ray: not on instruction set, lanes, threads or bands.
+#include <algorithm>
+#include <bit>
+#include <fstream>
+#include <iostream>
+
+#include "tests/reference_cases.h"
+#include "tests/sanitized.h"
+#include "tests/traced.h"
+
+namespace nullcone::test {
+namespace {
+
+/// Scenes that use every placing and shape, smaller than life.
+std::vector<std::string> scenes() {
+  json earth = json::parse(std::ifstream(NULLCONE_SOURCE "/scenes/goedel_earth.json"));
+  earth["camera"]["resolution"] = {kSanitized ? 220 : 1320, 150};
+  const std::string moving = R"({"metric": {"name": "minkowski"}, "observer": {"event": [5, 0, 0, 0],
+    "velocity": [0.3, 0.1, -0.2]}, "camera": {"type": "perspective", "fov_deg": 110, "resolution": [321, 203]}, "objects": [
+    {"name": "ball", "shape": {"type": "sphere", "radius": 1}, "placing": {"type": "local", "worldline":
+      {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0, 0.9, 0.1]}}},
+    {"name": "card", "shape": {"type": "quad", "edges": [3, 2]}, "placing": {"type": "local", "worldline":
+      {"type": "geodesic", "event": [0, 5, 1, 1], "velocity": [-0.2, 0, 0.5]}, "z_axis": [-1, 0.2, 0.1]}},
+    {"name": "heaven", "shape": {"type": "sky"}}]})";
+  const std::string resting = R"({"metric": {"name": "minkowski"}, "observer": {"event": [0, 0, 0, 0]},
+    "camera": {"type": "sphere", "resolution": [360, 181]}, "max_lookback": 50, "objects": [
+    {"name": "dome", "shape": {"type": "sphere", "radius": 30, "dome": true}, "placing": {"type": "coordinate",
+      "centre": [1, 2, 3]}},
+    {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": {"type": "local", "worldline":
+      {"type": "static", "event": [0, 2, 1, 0.5]}}},
+    {"name": "wall", "shape": {"type": "quad", "edges": [2, 2]}, "placing": {"type": "coordinate", "centre": [-3, 0, 0],
+      "z_axis": [1, 0, 0]}}]})";
+  return {earth.dump(), moving, resting};
+}
+
+/// All channels of hits and rays, in full precision, of a picture that is traced in bands of `lines` scan
+/// lines.
+std::vector<double> numbers(const std::string& text, std::string_view isa, int lines) {
+  const auto metrics = metric_descriptions();
+  Scene scene = read_scene(text, "test", metrics);
+  const auto tracer = prepare_scene(find_spacetime(scene.metric, isa), scene, "test");
+  std::vector<double> of_hits, of_rays;
+  const auto width = static_cast<std::size_t>(scene.camera.width);
+  for (int line = 0; line < scene.camera.height; line += lines) {
+    const int count = std::min(lines, scene.camera.height - line);
+    std::vector<HitRecord> hits(width * static_cast<std::size_t>(count));
+    std::vector<RayRecord> rays(hits.size());
+    hits.resize(tracer->trace_band(line, count, {hits, rays}));
+    for (const HitRecord& h : hits) {
+      const auto pixel = static_cast<double>(h.pixel + static_cast<std::size_t>(line) * width);
+      of_hits.insert(of_hits.end(), {pixel, static_cast<double>(h.id), static_cast<double>(h.order), h.Z, h.u,
+                                     h.v, h.shift, h.t, h.tau, h.mu});
+    }
+    for (const RayRecord& r : rays)
+      of_rays.insert(of_rays.end(), {static_cast<double>(r.status), static_cast<double>(r.steps),
+                                     double(r.error), double(r.drift)});
+  }
+  of_hits.insert(of_hits.end(), of_rays.begin(), of_rays.end());
+  return of_hits;
+}
+
+TEST(SameBits, OnEveryInstructionSetAndBandSize) {
+  for (const std::string& scene : scenes()) {
+    const std::vector<double> expected = numbers(scene, "sse2", kBandLines);
+    for (const std::string_view isa : instruction_sets())
+      for (const int lines : {kBandLines, 1, 7}) {
+        const std::vector<double> found = numbers(scene, isa, lines);
+        ASSERT_EQ(found.size(), expected.size());
+        const auto differs = std::ranges::mismatch(found, expected, [](double a, double b) {
+          return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+        });
+        EXPECT_TRUE(differs.in1 == found.end())
+            << isa << ", bands of " << lines << ": number " << differs.in1 - found.begin() << " is "
+            << *differs.in1 << ", not " << *differs.in2;
+      }
+  }
+  const auto present = instruction_sets();
+  for (const std::string_view isa : {"avx2", "avx512"})
+    if (std::ranges::find(present, isa) == present.end())
+      std::cout << "[  NOTE    ] " << isa << " is not there (machine or build): its column is left out\n";
+}
+
+TEST(SameBits, OnOneAndTwoThreads) {
+  for (const std::string& scene : scenes()) {
+    const auto metrics = metric_descriptions();
+    const Scene read = read_scene(scene, "test", metrics);
+    const Spacetime& spacetime = find_spacetime(read.metric);
+    const Dataset one = trace_scene(spacetime, read, "test", 1),
+                  two = trace_scene(spacetime, read, "test", 2);
+    EXPECT_EQ(one.manifest.hits_sha256, two.manifest.hits_sha256);
+    EXPECT_EQ(one.manifest.rays_sha256, two.manifest.rays_sha256);
+    EXPECT_GT(one.hits.count(), 100U);
+  }
+}
+
+}  // namespace
+}  // namespace nullcone::test
