@@ -35,17 +35,18 @@ struct GoedelGuard {
     // Least |Q|^2 without cancellation: C^2 - A^2 = Im(conj(q0) w)^2. A little room covers rounding.
     const S least = product.im * product.im / (C + A + S(1e-300));
     ball = S(bounding_radius * (1 + 1e-12)) + S(1e-13 * a) * (S(1.0) + q2);
-    const S u = S(0.5 / a) * ball, room = u * u - least;
-    const S sine = sqrt(max(room, S(0.0)) / max(S(2.0) * A, S(1e-300)));
-    const S below_1 = min(sine, S(1.0));
-    const S angle = atan2(below_1, sqrt((S(1.0) - below_1) * (S(1.0) + below_1)));
-    half_width = select(room > S(0.0), angle, S(-1.0));
-    psi_m = S(0.5) * (atan2(product.re, D) + S(std::numbers::pi));
     psi_rate = S(1 / (Goedel::kSqrt2 * a)) * path.kappa * abs(path.k0);
-    // psi runs backwards along rays into the past.
-    psi_m = select(path.k0 < S(0.0), -psi_m, psi_m);
     z0 = path.z0;
     z_rate = path.n_z * path.k0;
+    const S u = S(0.5 / a) * ball, room = u * u - least;
+    const auto may_meet = (room > S(0.0)) & ((abs(z0) <= ball) | (z0 * z_rate < S(0.0)));
+    half_width = S(-1.0);
+    psi_m = S(0.0);
+    if (!any(may_meet)) return;
+    const S sine = min(sqrt(max(room, S(0.0)) / max(S(2.0) * A, S(1e-300))), S(1.0));
+    half_width = select(may_meet, atan2(sine, sqrt((S(1.0) - sine) * (S(1.0) + sine))), half_width);
+    psi_m = S(0.5) * (atan2(product.re, D) + S(std::numbers::pi));
+    psi_m = select(path.k0 < S(0.0), -psi_m, psi_m);  // psi runs backwards along rays into the past
   }
 
   /// Affine length for which the ray surely stays farther than `ball` from the origin of its chart; 0 within

@@ -36,14 +36,18 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape) 
     return Placed<RestPlacing<M>, ChartBody<M>, Shape>{
         {metric, event, false, axes, ball}, {metric, event, axes}, shape};
 
-  const bool at_rest = placing.worldline.is_static();
+  if (placing.worldline.is_static() && !placing.gyroscope_axes)
+    return Placed<RestPlacing<M>, RestBody<M>, Shape>{
+        {metric, event, true, axes, ball}, {metric, event, axes}, shape};
+
   LocalFrame<M> frame{
       metric, event, four_velocity(Vec3<double>{placing.worldline.velocity}), placing.gyroscope_axes,
       {},     axes};
   if (frame.gyroscope) frame.prepare();
   const LocalBody<M> body{frame, make_orbit(frame, ball)};
-  if (at_rest && (Shape::isotropic || !frame.gyroscope))
-    return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, ball}, body, shape};
+  if constexpr (Shape::isotropic)
+    if (placing.worldline.is_static())
+      return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, ball}, body, shape};
   return Placed<MovingPlacing<M>, LocalBody<M>, Shape>{{frame, body.orbit, Shape::isotropic}, body, shape};
 }
 
@@ -245,6 +249,23 @@ class Kernel final : public Spacetime {
       out.push_back({l, P.event.c, P.tangent.c});
     }
     return out;
+  }
+  double walk(std::span<const double> values, const Event& event, const Event& k, double step,
+              std::size_t count) const override {
+    const M metric = make_metric(values);
+    const auto path = metric.path(convert<Wide>(Vec4<double>{event}), convert<Wide>(Vec4<double>{k}));
+    std::array<double, Lanes<Wide>::count> first{};
+    for (std::size_t lane = 0; lane < first.size(); ++lane) first[lane] = static_cast<double>(lane) * step;
+    Wide lambda = Lanes<Wide>::load(first.data()), sum(0.0);
+    for (std::size_t i = 0; i < count; i += first.size()) {
+      const Vec4<Wide> x = path.at(lambda).event;
+      sum = sum + ((x[0] + x[1]) + (x[2] + x[3]));
+      lambda = lambda + Wide(step * static_cast<double>(first.size()));
+    }
+    Lanes<Wide>::store(sum, first.data());
+    double total = 0;
+    for (const double lane : first) total += lane;
+    return total;
   }
   std::vector<NamedValue> conserved(std::span<const double> values,
                                     const GeodesicPoint& point) const override {

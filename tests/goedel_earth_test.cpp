@@ -97,21 +97,22 @@ TEST(GoedelEarth, HasTheThreeImagesOfTheTable) {
       {picture.centre, {62, 86}, {23.80, 22.07}, 0.476, {0.46, 0.50}, {-0.65, -0.57}, {0.61, 0.70}, false},
       {picture.right, {-81, -53}, {28.5, 2.5}, 0.442, {0.42, 0.47}, {-2.10, -2.03}, {5.67, 5.76}, true},
   };
+  const double coarse = kSanitized ? 3 : 1;  // wider pixels miss more of an edge
   for (const Row& row : rows) {
     const Image& image = row.image;
     ASSERT_GT(image.count, 100);
     // The table is rounded to its last digit; a pixel is 0.083 degrees, half of it missing at either side.
-    EXPECT_NEAR(image.azimuth_from, row.azimuth[0], 0.6);
-    EXPECT_NEAR(image.azimuth_to, row.azimuth[1], 0.6);
+    EXPECT_NEAR(image.azimuth_from, row.azimuth[0], 0.6 * coarse);
+    EXPECT_NEAR(image.azimuth_to, row.azimuth[1], 0.6 * coarse);
     EXPECT_NEAR(image.azimuth_to - image.azimuth_from, row.size[0], kSanitized ? 0.7 : 0.17);
     EXPECT_NEAR(image.elevation_to - image.elevation_from, row.size[1], 0.17);
-    EXPECT_NEAR(image.g(), row.g, 0.001);
-    EXPECT_NEAR(image.g_from, row.g_range[0], 0.006);
-    EXPECT_NEAR(image.g_to, row.g_range[1], 0.006);
-    EXPECT_NEAR(image.t_from, row.t[0], 0.006);
-    EXPECT_NEAR(image.t_to, row.t[1], 0.006);
-    EXPECT_NEAR(image.Z_from, row.Z[0], 0.006);
-    EXPECT_NEAR(image.Z_to, row.Z[1], 0.006);
+    EXPECT_NEAR(image.g(), row.g, 0.001 * coarse);
+    EXPECT_NEAR(image.g_from, row.g_range[0], 0.006 * coarse);
+    EXPECT_NEAR(image.g_to, row.g_range[1], 0.006 * coarse);
+    EXPECT_NEAR(image.t_from, row.t[0], 0.006 * coarse);
+    EXPECT_NEAR(image.t_to, row.t[1], 0.006 * coarse);
+    EXPECT_NEAR(image.Z_from, row.Z[0], 0.006 * coarse);
+    EXPECT_NEAR(image.Z_to, row.Z[1], 0.006 * coarse);
     EXPECT_GT(row.mirrored ? image.mirrored : image.direct,
               99 * (row.mirrored ? image.direct : image.mirrored));
     EXPECT_EQ(image.odd_orders, row.mirrored ? static_cast<unsigned>(image.count) : 0U);

@@ -19,8 +19,9 @@ struct Placed {
 };
 template <class M>
 using AnyPlaced =
-    std::variant<Placed<RestPlacing<M>, LocalBody<M>, Sphere>, Placed<RestPlacing<M>, LocalBody<M>, Quad>,
+    std::variant<Placed<RestPlacing<M>, RestBody<M>, Sphere>, Placed<RestPlacing<M>, RestBody<M>, Quad>,
                  Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Quad>,
+                 Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
                  Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
                  Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
 

@@ -155,6 +155,30 @@ struct LocalBody {
   }
 };
 
+/// The same for an object at rest whose axes are tied to the static tetrad: the isometry of one event does it
+/// all.
+template <Metric M>
+struct RestBody {
+  M metric;
+  Vec4<double> place;
+  Matrix3<double> axes;
+
+  template <class S>
+  std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
+    const Vec4<S> x = metric.to_origin(convert<S>(place), event);
+    return {x[0] - tau, convert<S>(axes) * spatial(x)};
+  }
+  template <class S>
+  Vec4<S> event(const S& tau, const Vec3<S>& X) const {
+    const Vec3<S> x = X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
+    return metric.from_origin(convert<S>(place), Vec4<S>{{tau, x[0], x[1], x[2]}});
+  }
+  template <class S>
+  S first_guess(const Vec4<S>& event) const {
+    return metric.to_origin(convert<S>(place), event)[0];
+  }
+};
+
 /// The same for an object that is fixed in the chart; its clocks are those of static observers.
 template <Metric M>
 struct ChartBody {

@@ -73,6 +73,10 @@ class Spacetime {
   /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter.
   virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event,
                                               const Event& k, std::span<const double> lambda) const = 0;
+  /// Evaluates the closed form at `count` affine parameters `step` apart, as wide as the kernel is, and sums
+  /// what it finds: the yardstick of benchmarks.
+  virtual double walk(std::span<const double> parameters, const Event& event, const Event& k, double step,
+                      std::size_t count) const = 0;
   /// Constants of motion of the geodesic through the point.
   virtual std::vector<NamedValue> conserved(std::span<const double> parameters,
                                             const GeodesicPoint& point) const = 0;

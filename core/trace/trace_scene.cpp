@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -109,6 +110,32 @@ TracedBand trace_one(const Tracer& tracer, const Camera& camera, int first_line)
   return out;
 }
 
+/// Takes bands in order, one at a time, and tells how far it has come. What is thrown is kept until the
+/// pipeline is empty: what is in flight when an exception crosses a pipeline of TBB is never freed.
+struct BandCounter {
+  const Camera& camera;
+  const Progress& progress;
+  int next_line = 0, done_lines = 0;
+  std::atomic<bool> stopped = false;
+  std::exception_ptr failure = nullptr;
+
+  template <class Take>
+  void take_next(const Take& take) {
+    if (stopped) return;
+    try {
+      take();
+      done_lines = std::min(done_lines + kBandLines, camera.height);
+      const auto width = static_cast<std::size_t>(camera.width);
+      if (progress)
+        progress(width * static_cast<std::size_t>(done_lines),
+                 width * static_cast<std::size_t>(camera.height));
+    } catch (...) {
+      failure = std::current_exception();
+      stopped = true;
+    }
+  }
+};
+
 /// Traces every band on `threads` threads. `convert` makes of each what shall be kept of it, in the thread
 /// that traced it; `take` gets these in order, one at a time. Only a few bands are in flight at once, so
 /// memory is bounded by what `take` keeps. Returns the processor time used.
@@ -120,27 +147,25 @@ double for_each_band(const Tracer& tracer, const Camera& camera, int threads, co
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const auto in_flight = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   std::atomic<long> nanoseconds = 0;
-  int next_line = 0, done_lines = 0;
-  const auto first_lines = tbb::make_filter<void, int>(  // named, so that the types below can be read
-      tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-        if (next_line >= camera.height) flow.stop();
-        return std::exchange(next_line, next_line + kBandLines);
-      });
+  BandCounter counter{camera, progress};
+  const auto next = [&](tbb::flow_control& flow) {
+    if (counter.stopped || counter.next_line >= camera.height) flow.stop();
+    return std::exchange(counter.next_line, counter.next_line + kBandLines);
+  };
   using Kept = std::shared_ptr<decltype(convert(TracedBand{}))>;
-  const auto traced = tbb::make_filter<int, Kept>(tbb::filter_mode::parallel, [&](int first_line) {
+  const auto trace = [&](int first_line) -> Kept {
+    if (counter.stopped) return {};
     const double start = thread_seconds();
     auto kept = std::make_shared<typename Kept::element_type>(convert(trace_one(tracer, camera, first_line)));
     nanoseconds += static_cast<long>(1e9 * (thread_seconds() - start));
     return kept;
-  });
-  const auto taken = tbb::make_filter<Kept, void>(tbb::filter_mode::serial_in_order, [&](const Kept& kept) {
-    take(std::move(*kept));
-    done_lines = std::min(done_lines + kBandLines, camera.height);
-    const auto width = static_cast<std::size_t>(camera.width);
-    if (progress)
-      progress(width * static_cast<std::size_t>(done_lines), width * static_cast<std::size_t>(camera.height));
-  });
-  tbb::parallel_pipeline(in_flight, first_lines & traced & taken);
+  };
+  const auto finish = [&](const Kept& kept) { counter.take_next([&] { take(std::move(*kept)); }); };
+  using tbb::filter_mode, tbb::make_filter;
+  tbb::parallel_pipeline(in_flight, make_filter<void, int>(filter_mode::serial_in_order, next) &
+                                        make_filter<int, Kept>(filter_mode::parallel, trace) &
+                                        make_filter<Kept, void>(filter_mode::serial_in_order, finish));
+  if (counter.failure) std::rethrow_exception(counter.failure);
   return 1e-9 * static_cast<double>(nanoseconds.load());
 }
 
