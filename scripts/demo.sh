@@ -2,7 +2,7 @@
 # The four pictures of the Gödel study, out of one traced dataset. Installs what is missing, builds, traces, post-renders.
 set -eu
 cd "$(dirname "$0")/.."
-scripts/build.sh release
+scripts/build.sh release tools
 bin=build/release/bin out=out/demo
 mkdir -p "$out"
 "$bin/nullcone-trace" scenes/goedel_earth.json -o "$out/dataset.exr"

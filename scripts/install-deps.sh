@@ -12,10 +12,10 @@ packages=(
   libopenexr-dev libimath-dev   # datasets
   libopenimageio-dev    # textures and pictures
   nlohmann-json3-dev libcli11-dev libssl-dev   # JSON, command lines, SHA-256
-  libgtest-dev libbenchmark-dev   # tests and benchmarks
+  libgtest-dev libbenchmark-dev python3   # tests and benchmarks
   xplanet-images        # the map of the Earth that the demo shows
 )
-[ "${1:-}" = --test ] && packages+=(clang-format clang-tidy python3 openexr)
+[ "${1:-}" = --test ] && packages+=(clang-format openexr)
 
 missing=()
 for package in "${packages[@]}"; do
