@@ -1,6 +1,7 @@
 // nullcone-trace: from a scene to a dataset.
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -34,14 +35,31 @@ std::string scene_text(const std::string& path) {
   return text;
 }
 
+/// Set by SIGINT and SIGTERM: tracing then ends after the bands in flight, and nothing is left behind. What
+/// is already being written is finished. A second signal ends the program at once.
+std::atomic<bool> stop_wanted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void stop_when_asked() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_wanted = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  for (const int number : {SIGINT, SIGTERM}) {
+    struct sigaction before {};
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);  // ignored under nohup, say
+  }
+}
+
 /// Rate and time left on standard error, about five times a second.
 class Talk {
  public:
   explicit Talk(bool quiet) : quiet_(quiet) {}
 
   Progress progress() {
-    if (quiet_) return {};
     return [this](std::size_t done, std::size_t all) {
+      if (stop_wanted) throw Interrupted();
+      if (quiet_) return;
       const double now = seconds();
       double last = last_.load();
       if (now - last < 0.2 || !last_.compare_exchange_strong(last, now)) return;
@@ -67,14 +85,12 @@ class Talk {
   std::atomic<double> last_ = 0;
 };
 
-/// Fails before the work, not after it, where nothing can be written.
+/// Fails before the work, not after it, where nothing can be written; removes what killed runs left there.
 void check_writable(const std::string& path) {
-  const std::string probe = path + ".part-probe";
   const bool fits = path.size() > 4 && path.ends_with(".exr");
   if (!fits) throw InputError(path, "expected a name that ends in .exr");
   if (std::filesystem::is_directory(path)) throw InputError(path, "is a folder; expected the name of a file");
-  if (!std::ofstream(probe)) throw WorkError(path, "cannot write there (no such folder, or no permission)");
-  std::remove(probe.c_str());
+  check_place(path);
 }
 
 }  // namespace
@@ -89,15 +105,21 @@ int main(int argc, char** argv) {
   app.add_option("--isa", isa, "Instruction set of the kernel");
   add_common_options(app, options);
 
+  stop_when_asked();
   return run_tool(app, argc, argv, [&] {
     check_writable(output);
     const auto metrics = metric_descriptions();
     const Scene scene = read_scene(scene_text(scene_path), scene_path, metrics);
     const Spacetime& spacetime = find_spacetime(scene.metric, isa);
     Talk talk(options.quiet);
-    const Dataset dataset = trace_scene(spacetime, scene, scene_path, options.threads, talk.progress());
-    write_dataset(output, dataset, make_preview(dataset));
-    talk.summary(dataset, output);
+    try {
+      const Dataset dataset = trace_scene(spacetime, scene, scene_path, options.threads, talk.progress());
+      write_dataset(output, dataset, make_preview(dataset));
+      talk.summary(dataset, output);
+    } catch (const Interrupted&) {
+      std::fprintf(stderr, "%snullcone-trace: interrupted, nothing is written\n", options.quiet ? "" : "\n");
+      return 3;
+    }
     return 0;
   });
 }
