@@ -192,7 +192,7 @@ std::string JsonObject::text(std::string_view key) {
 
 std::string JsonObject::text(std::string_view key, std::string fallback) {
   known_.emplace(key);
-  return has(key) ? text(key) : fallback;
+  return has(key) ? text(key) : std::move(fallback);
 }
 
 std::string JsonObject::word(std::string_view key, const std::vector<std::string>& allowed) {
@@ -208,7 +208,7 @@ std::string JsonObject::word(std::string_view key, const std::vector<std::string
 std::string JsonObject::word(std::string_view key, const std::vector<std::string>& allowed,
                              std::string fallback) {
   known_.emplace(key);
-  return has(key) ? word(key, allowed) : fallback;
+  return has(key) ? word(key, allowed) : std::move(fallback);
 }
 
 std::string JsonObject::name(std::string_view key, std::set<std::string>& taken) {
@@ -272,8 +272,8 @@ std::vector<double> JsonObject::numbers(std::string_view key, std::size_t count,
   return out;
 }
 
-std::vector<double> JsonObject::numbers_or(std::string_view key, std::vector<double> fallback, double least,
-                                           double most) {
+std::vector<double> JsonObject::numbers_or(std::string_view key, const std::vector<double>& fallback,
+                                           double least, double most) {
   known_.emplace(key);
   return has(key) ? numbers(key, fallback.size(), least, most) : fallback;
 }

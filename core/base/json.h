@@ -49,8 +49,8 @@ class JsonObject {
   /// A list of exactly `count` finite numbers within [least, most].
   std::vector<double> numbers(std::string_view key, std::size_t count, double least = -kBig,
                               double most = kBig);
-  std::vector<double> numbers_or(std::string_view key, std::vector<double> fallback, double least = -kBig,
-                                 double most = kBig);
+  std::vector<double> numbers_or(std::string_view key, const std::vector<double>& fallback,
+                                 double least = -kBig, double most = kBig);
 
   std::vector<std::string> keys() const;
   /// Refuses every key that nobody asked for, naming those that exist.

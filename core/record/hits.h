@@ -36,6 +36,9 @@ struct Channel {
   Column column;  ///< pointer to member
 };
 
+template <class Column>
+Channel(std::string_view, std::string_view, Column) -> Channel<Column>;
+
 /// The channels of the deep part `hits`, in the order of hashes and listings.
 inline constexpr std::tuple kHitChannels = {
     Channel{"Z", "affine distance along the ray, k.u = 1 at the camera (scene units)", &Hits::Z},

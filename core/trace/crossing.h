@@ -121,8 +121,8 @@ Vec4<S> gradient(const Body& body, const Shape& shape, const Vec4<S>& event, con
   const auto x = Vec4<D>::map([&](std::size_t c) {
     return D(event[c], Vec<S, 5>{{tetrad.e[0][c], tetrad.e[1][c], tetrad.e[2][c], tetrad.e[3][c], S(0.0)}});
   });
-  const auto [late, X] = body.local(x, D::variable(tau, 4));
-  const D value = shape.value(X);
+  const std::pair<D, Vec3<D>> seen = body.local(x, D::variable(tau, 4));
+  const D &late = seen.first, value = shape.value(seen.second);
   const S per_tau = value.d[4] / late.d[4];
   return Vec4<S>::map([&](std::size_t a) { return value.d[a] - per_tau * late.d[a]; });
 }
