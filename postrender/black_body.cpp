@@ -1,6 +1,7 @@
 #include "postrender/black_body.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "postrender/cie1931.h"
@@ -12,6 +13,10 @@ constexpr double kPlanck_J_s = 6.62607015e-34;
 constexpr double kLight_m_s = 299792458.0;
 constexpr double kBoltzmann_J_K = 1.380649e-23;
 constexpr double kEfficacy_lm_W = 683;
+
+Rgb rgb_of(const std::array<double, 3>& c) {
+  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+}
 }  // namespace
 
 double planck_W_m3_sr(double wavelength_m, double temperature_K) {
@@ -38,26 +43,39 @@ const BlackBodyTable& BlackBodyTable::instance() {
 }
 
 BlackBodyTable::BlackBodyTable() {
-  const auto count = static_cast<std::size_t>(kOctaves * kPerOctave) + 1;
-  nodes_.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Xyz xyz = black_body_xyz(std::exp2(kFirstOctave + static_cast<double>(i) / kPerOctave));
-    const auto rgb = linear_srgb({xyz[0] / xyz[1], 1.0, xyz[2] / xyz[1]});
-    nodes_.push_back({static_cast<float>(std::log(xyz[1])),
-                      {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])}});
+  constexpr int kCount = kOctaves << kNodeBits;
+  nodes_.resize(kCount + 1);  // the last one stays at its beginning
+  const auto start_K = [](int node) {
+    return static_cast<double>(std::bit_cast<float>((node + kFirstNode) << (23 - kNodeBits)));
+  };
+  std::array<double, 3> next = linear_srgb(black_body_xyz(start_K(0)));
+  for (int node = 0; node < kCount; ++node) {
+    // Through the values at 0, 1/3, 2/3 and 1.
+    const double from_K = start_K(node), step_K = start_K(node + 1) - from_K;
+    const auto y0 = next, y1 = linear_srgb(black_body_xyz(from_K + step_K / 3)),
+               y2 = linear_srgb(black_body_xyz(from_K + 2 * step_K / 3));
+    next = linear_srgb(black_body_xyz(from_K + step_K));
+    std::array<std::array<double, 3>, 4> c;
+    for (std::size_t i = 0; i < 3; ++i) {
+      c[0][i] = y0[i];
+      c[1][i] = (-11 * y0[i] + 18 * y1[i] - 9 * y2[i] + 2 * next[i]) / 2;
+      c[2][i] = 9 * (2 * y0[i] - 5 * y1[i] + 4 * y2[i] - next[i]) / 2;
+      c[3][i] = 9 * (-y0[i] + 3 * y1[i] - 3 * y2[i] + next[i]) / 2;
+    }
+    for (std::size_t k = 0; k < 4; ++k) nodes_[static_cast<std::size_t>(node)].c[k] = rgb_of(c[k]);
   }
+  nodes_.back().c[0] = rgb_of(next);
 }
 
 Rgb BlackBodyTable::color_cd_m2(double temperature_K) const {
   if (!(temperature_K >= kColdest_K)) return {};
-  const double tabulated_K = std::min(temperature_K, kHottest_K);
-  const double x = (std::log2(tabulated_K) - kFirstOctave) * kPerOctave;
-  const std::size_t i = std::min(static_cast<std::size_t>(x), nodes_.size() - 2);
-  const double s = x - static_cast<double>(i);
-  const double log_Y =
-      (1 - s) * static_cast<double>(nodes_[i].log_Y) + s * static_cast<double>(nodes_[i + 1].log_Y);
-  const double Y = std::exp(log_Y) * (temperature_K / tabulated_K);
-  return static_cast<float>(Y) * mix(nodes_[i].per_Y, nodes_[i + 1].per_Y, static_cast<float>(s));
+  const auto within = static_cast<float>(std::min(temperature_K, kHottest_K));
+  constexpr int kUnused = 23 - kNodeBits;
+  const auto bits = std::bit_cast<std::int32_t>(within);
+  const auto& c = nodes_[static_cast<std::size_t>((bits >> kUnused) - kFirstNode)].c;
+  const float s = std::ldexp(static_cast<float>(bits & ((1 << kUnused) - 1)), -kUnused);
+  const Rgb c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3];
+  return static_cast<float>(std::max(temperature_K / kHottest_K, 1.0)) * (c0 + s * (c1 + s * (c2 + s * c3)));
 }
 
 }  // namespace nullcone::postrender

@@ -27,6 +27,17 @@ Matrix3 derive_xyz_to_srgb() {
 /// because the curve is nowhere steeper than 12.92 * 255 = 3295 codes a unit.
 class Encoder8 {
  public:
+  static const Encoder8& instance() {
+    static const Encoder8 encoder;
+    return encoder;
+  }
+  std::uint8_t operator()(float linear) const {
+    const float x = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
+    const std::size_t code = code_[static_cast<std::size_t>(x * kBins)];
+    return static_cast<std::uint8_t>(code + (x >= threshold_[code + 1] ? 1 : 0));
+  }
+
+ private:
   Encoder8() {
     for (std::size_t code = 0; code < 256; ++code)
       threshold_[code] = static_cast<float>(srgb_decoded((static_cast<double>(code) - 0.5) / 255.0));
@@ -37,13 +48,6 @@ class Encoder8 {
       code_[bin] = static_cast<std::uint8_t>(code);
     }
   }
-  std::uint8_t operator()(float linear) const {
-    const float x = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
-    const std::size_t code = code_[static_cast<std::size_t>(x * kBins)];
-    return static_cast<std::uint8_t>(code + (x >= threshold_[code + 1] ? 1 : 0));
-  }
-
- private:
   static constexpr int kBins = 4096;
   std::array<float, 257> threshold_{};
   std::array<std::uint8_t, kBins + 1> code_{};
@@ -77,11 +81,21 @@ double srgb_encoded(double linear) {
 }
 
 std::vector<std::uint8_t> encode_srgb8(std::span<const Rgb> colors) {
-  static const Encoder8 encode;
-  std::vector<std::uint8_t> out;
-  out.reserve(3 * colors.size());
-  for (const Rgb c : colors) out.insert(out.end(), {encode(c.r), encode(c.g), encode(c.b)});
+  const Encoder8& encode = Encoder8::instance();
+  std::vector<std::uint8_t> out(3 * colors.size());
+  std::uint8_t* at = out.data();
+  for (const Rgb c : colors)
+    for (const float component : {c.r, c.g, c.b}) *at++ = encode(component);
   return out;
+}
+
+void encode_srgb8(std::span<const float> r, const float* g, const float* b, std::uint8_t* out) {
+  const Encoder8& encode = Encoder8::instance();
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    out[3 * i] = encode(r[i]);
+    out[3 * i + 1] = encode(g[i]);
+    out[3 * i + 2] = encode(b[i]);
+  }
 }
 
 std::vector<std::uint16_t> encode_srgb16(std::span<const Rgb> colors) {

@@ -22,7 +22,8 @@ const Matrix3& xyz_to_srgb();
 std::array<double, 3> linear_srgb(const Xyz& xyz);
 
 /// The luminance of linear sRGB: the middle row of the inverse of xyz_to_srgb(), rounded to float.
-constexpr float luminance(Rgb c) { return 0.212639006f * c.r + 0.715168679f * c.g + 0.0721923154f * c.b; }
+inline constexpr Rgb kLuminance = {0.212639006f, 0.715168679f, 0.0721923154f};
+constexpr float luminance(Rgb c) { return kLuminance.r * c.r + kLuminance.g * c.g + kLuminance.b * c.b; }
 
 /// The sRGB transfer curve (IEC 61966-2-1), from an encoded value in [0, 1] to a linear one and back.
 double srgb_decoded(double encoded);
@@ -31,6 +32,7 @@ double srgb_encoded(double linear);
 /// Encoded 8 bit and 16 bit components, three a pixel, correctly rounded. Components are clamped to [0, 1];
 /// NaN is 0.
 std::vector<std::uint8_t> encode_srgb8(std::span<const Rgb> colors);
+void encode_srgb8(std::span<const float> r, const float* g, const float* b, std::uint8_t* out);
 std::vector<std::uint16_t> encode_srgb16(std::span<const Rgb> colors);
 
 /// The flat colour of an object that the look does not mention, by its number from 1: hues far apart.

@@ -1,67 +1,11 @@
 #include "postrender/develop.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "postrender/color.h"
 
 namespace nullcone::postrender {
-
-namespace {
-
-struct LinearCurve {
-  Rgb operator()(Rgb c) const { return c; }
-};
-
-/// Y -> 1 - exp(-k Y)
-struct ExponentialCurve {
-  float k;
-  Rgb operator()(Rgb c) const {
-    const float Y = luminance(c);
-    if (!(Y > 0)) return c;
-    // Far beyond the shoulder the ratio alone would lose the colour to 0 * infinity.
-    return std::isfinite(Y) ? (-std::expm1(-k * Y) / Y) * c : Rgb{1, 1, 1};
-  }
-};
-
-struct HuePreserving {
-  Rgb operator()(Rgb c) const { return desaturated_into_gamut(c); }
-};
-struct Clip {
-  Rgb operator()(Rgb c) const { return clipped_into_gamut(c); }
-};
-
-float clipped(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
-
-std::variant<LinearCurve, ExponentialCurve> curve_of(const DevelopLook& look) {
-  if (look.curve == DevelopLook::Curve::linear) return LinearCurve{};
-  return ExponentialCurve{static_cast<float>(look.k)};
-}
-
-std::variant<HuePreserving, Clip> gamut_of(const DevelopLook& look) {
-  if (look.gamut == DevelopLook::Gamut::hue_preserving) return HuePreserving{};
-  return Clip{};
-}
-
-}  // namespace
-
-Rgb clipped_into_gamut(Rgb c) { return {clipped(c.r), clipped(c.g), clipped(c.b)}; }
-
-Rgb desaturated_into_gamut(Rgb c) {
-  const float Y = luminance(c);
-  if (!(Y > 0)) return {};
-  if (Y >= 1) return {1, 1, 1};
-  float kept = 1;  // of the colour's difference from grey
-  for (const float component : {c.r, c.g, c.b}) {
-    if (component < 0) kept = std::min(kept, Y / (Y - component));
-    if (component > 1) kept = std::min(kept, (1 - Y) / (component - Y));
-  }
-  return clipped_into_gamut(mix({Y, Y, Y}, c, kept));  // rounding may leave the gamut by a bit
-}
 
 double auto_white_cd_m2(const Radiance& radiance) {
   std::vector<float> lit;
@@ -73,28 +17,30 @@ double auto_white_cd_m2(const Radiance& radiance) {
   return static_cast<double>(*at);
 }
 
-Image develop(const Radiance& radiance, int width, int height, const DevelopLook& look) {
-  Image image{width, height, 1, std::vector<Rgb>(radiance.display.size()),
-              std::vector<Rgb>(radiance.display.size())};
-  const bool physical = !radiance.physical.empty();
-  if (physical) image.white_cd_m2 = look.white_cd_m2 ? *look.white_cd_m2 : auto_white_cd_m2(radiance);
-  const auto gain = static_cast<float>(std::exp2(look.ev));
-  const auto physical_gain = static_cast<float>(std::exp2(look.ev) / image.white_cd_m2);
+void set_size(Image& image, int width, int height, const ImageParts& parts) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  image.width = width;
+  image.height = height;
+  image.exposed.resize(parts.exposed ? pixels : 0);
+  image.display.resize(parts.display ? pixels : 0);
+  image.encoded.resize(parts.encoded ? 3 * pixels : 0);
+}
 
-  std::visit(
-      [&](const auto& curve, const auto& gamut) {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.display.size(), 4096),
-                          [&](const auto& range) {
-                            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              Rgb c = gain * radiance.display[i];
-                              if (physical) c = c + physical_gain * radiance.physical[i];
-                              image.exposed[i] = c;
-                              image.display[i] = gamut(curve(c));
-                            }
-                          });
-      },
-      curve_of(look), gamut_of(look));
-  return image;
+void LineDeveloper::develop(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count,
+                            Image& image) {
+  for (std::vector<float>& plane : planes_) plane.resize(std::max(plane.size(), count));
+  const Planes planes = {planes_[0].data(), planes_[1].data(), planes_[2].data()};
+  const double gain = std::exp2(look_.ev);
+  kernel_.expose(display, static_cast<float>(gain), physical, static_cast<float>(gain / image.white_cd_m2),
+                 count, planes);
+  if (!image.exposed.empty()) kernel_.interleave(planes, count, image.exposed.data() + first);
+  if (look_.curve == DevelopLook::Curve::exponential)
+    kernel_.exponential_curve(static_cast<float>(look_.k), count, planes);
+  if (look_.gamut == DevelopLook::Gamut::hue_preserving) kernel_.desaturate(count, planes);
+  if (look_.gamut == DevelopLook::Gamut::clip) kernel_.clip(count, planes);
+  if (!image.display.empty()) kernel_.interleave(planes, count, image.display.data() + first);
+  if (!image.encoded.empty())
+    encode_srgb8({planes.r, count}, planes.g, planes.b, image.encoded.data() + 3 * first);
 }
 
 }  // namespace nullcone::postrender

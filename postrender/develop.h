@@ -1,7 +1,11 @@
 // Developing: exposure, tone curve, gamut mapping.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "postrender/image.h"
+#include "postrender/kernel.h"
 #include "postrender/look.h"
 
 namespace nullcone::postrender {
@@ -10,15 +14,28 @@ namespace nullcone::postrender {
 /// none.
 double auto_white_cd_m2(const Radiance& radiance);
 
-/// Exposes, tones and maps into the gamut. The tone curve acts on the luminance and scales the three
-/// components alike, so that it keeps hue and saturation; `linear` leaves the clipping to the gamut mapping.
-Image develop(const Radiance& radiance, int width, int height, const DevelopLook& look);
+/// An image that has room for its parts; memory that it has is used again.
+void set_size(Image& image, int width, int height, const ImageParts& parts);
 
-/// Mixes a colour with the grey of its own luminance, as little as is needed, until every component lies
-/// within [0, 1]: hue and luminance stay. Luminances from 1 on give white, those up to 0 and NaN give black.
-Rgb desaturated_into_gamut(Rgb color);
+/// Exposes, tones and maps into the gamut; holds the working memory of one thread. The tone curve acts on the
+/// luminance and scales the three components alike, so that it keeps hue and saturation; `linear` leaves the
+/// clipping to the gamut mapping.
+///
+/// hue_preserving mixes a colour with the grey of its own luminance, as little as is needed, until every
+/// component lies within [0, 1]: hue and luminance stay. Luminances from 1 on give white, those up to 0 and
+/// NaN give black. clip clamps every component; NaN is 0.
+class LineDeveloper {
+ public:
+  LineDeveloper(const DevelopLook& look, const Kernel& kernel) : look_(look), kernel_(kernel) {}
 
-/// Clamps every component to [0, 1]; NaN is 0.
-Rgb clipped_into_gamut(Rgb color);
+  /// Pixels [first, first + count) of `image`, whose white is known, from their radiance (`physical` may be
+  /// null).
+  void develop(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count, Image& image);
+
+ private:
+  const DevelopLook& look_;
+  const Kernel& kernel_;
+  std::array<std::vector<float>, 3> planes_;
+};
 
 }  // namespace nullcone::postrender

@@ -1,6 +1,7 @@
 // Pictures in memory: linear colours, row by row from the top left.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace nullcone::postrender {
@@ -17,19 +18,34 @@ constexpr Rgb operator*(Rgb a, Rgb b) { return {a.r * b.r, a.g * b.g, a.b * b.b}
 constexpr Rgb operator*(float s, Rgb a) { return {s * a.r, s * a.g, s * a.b}; }
 constexpr Rgb mix(Rgb a, Rgb b, float s) { return a + s * (b - a); }
 
+/// A colour on its way through the pixel loops: one register, the fourth lane idle.
+struct alignas(16) Rgbx {
+  float r = 0, g = 0, b = 0, idle = 0;
+  constexpr Rgbx() = default;
+  constexpr Rgbx(Rgb c) : r(c.r), g(c.g), b(c.b) {}
+  constexpr Rgbx(float red, float green, float blue) : r(red), g(green), b(blue) {}
+  constexpr operator Rgb() const { return {r, g, b}; }
+};
+
 /// What shading yields, before exposure. Its two parts add up once the white is known:
 /// colour = display + physical / white_cd_m2.
 struct Radiance {
-  std::vector<Rgb> display;   ///< relative: 1 is white by definition
-  std::vector<Rgb> physical;  ///< cd/m^2; empty when nothing in the look is physical
+  std::vector<Rgbx> display;   ///< relative: 1 is white by definition
+  std::vector<Rgbx> physical;  ///< cd/m^2; empty when nothing in the look is physical
 };
 
 /// A developed picture.
 struct Image {
   int width = 0, height = 0;
-  double white_cd_m2 = 1;    ///< the luminance shown as 1 at ev = 0; 1 when nothing is physical
-  std::vector<Rgb> exposed;  ///< after exposure, before tone curve and gamut mapping: for EXR files
-  std::vector<Rgb> display;  ///< linear, within [0, 1]: for screens, PNG and JPEG
+  double white_cd_m2 = 1;             ///< the luminance shown as 1 at ev = 0; 1 when nothing is physical
+  std::vector<Rgb> exposed;           ///< after exposure, before tone curve and gamut mapping: for EXR files
+  std::vector<Rgb> display;           ///< linear, within [0, 1]: for screens, PNG and JPEG
+  std::vector<std::uint8_t> encoded;  ///< `display` as encode_srgb8() makes it, where it was asked for
+};
+
+/// Which of its parts a picture shall have; the others are left empty.
+struct ImageParts {
+  bool exposed = true, display = true, encoded = false;
 };
 
 }  // namespace nullcone::postrender

@@ -1,6 +1,7 @@
 #include "postrender/renderer.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -40,8 +41,7 @@ struct TextureMaker {
   Texture operator()(const CheckerboardTexture& board) const { return board; }
   Texture operator()(const ImageLook& image) const {
     auto pyramid = cache.get(image.file, image.pointer);
-    if (image.mipmap) return MipmapTexture{std::move(pyramid), image.uv};
-    return BilinearTexture{std::move(pyramid), image.uv};
+    return ImageTexture{std::move(pyramid), image.uv, image.mipmap};
   }
 };
 
@@ -49,13 +49,15 @@ struct SpectrumMaker {
   Effects effects;
   Spectrum operator()(const DisplayLook&) const { return DisplaySpectrum{effects}; }
   Spectrum operator()(const BlackBodyLook& body) const {
-    return BlackBodySpectrum(body.temperature_K, effects);
+    return BlackBodySpectrum{effects, body.temperature_K};
   }
 };
 
 }  // namespace
 
-Renderer::Renderer(Dataset dataset) : dataset_(std::move(dataset)) { check_records(dataset_); }
+Renderer::Renderer(Dataset dataset, const Kernel& kernel) : dataset_(std::move(dataset)), kernel_(kernel) {
+  check_records(dataset_);
+}
 
 std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& look, Rgb fallback,
                                      Effects effects) {
@@ -89,24 +91,87 @@ Shading Renderer::prepare(const Look& look) {
   return shading;
 }
 
+/// Calls work(row) for all rows, with one worker made by `make_worker` a thread.
+template <class MakeWorker>
+void Renderer::for_each_row(MakeWorker&& make_worker) const {
+  const int rows = dataset_.manifest.height, bands = (rows + kBandRows - 1) / kBandRows;
+  tbb::enumerable_thread_specific<decltype(make_worker())> workers(make_worker);
+  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const auto& range) {
+    auto& work = workers.local();
+    for (int row = range.begin() * kBandRows; row < std::min(rows, range.end() * kBandRows); ++row)
+      work(static_cast<std::size_t>(row));
+  });
+}
+
+void Renderer::keep_radiance(const Shading& shading) {
+  const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
+  radiance_.display.resize(dataset_.pixels());
+  radiance_.physical.resize(has_physical(shading) ? dataset_.pixels() : 0);
+  for_each_row([&] {
+    return [this, width, shader = LineShader(dataset_, shading, kernel_)](std::size_t row) mutable {
+      shader.shade(row, radiance_.display.data() + row * width,
+                   radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width);
+    };
+  });
+}
+
+void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
+  const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
+  for_each_row([&] {
+    return [this, width, &image, developer = LineDeveloper(look, kernel_)](std::size_t row) mutable {
+      developer.develop(radiance_.display.data() + row * width,
+                        radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width,
+                        row * width, width, image);
+    };
+  });
+}
+
+void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const {
+  const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
+  const std::size_t physical_width = has_physical(shading) ? width : 0;
+  for_each_row([&] {
+    return
+        [=, &image, shader = LineShader(dataset_, shading, kernel_), developer = LineDeveloper(look, kernel_),
+         line =
+             Radiance{std::vector<Rgbx>(width), std::vector<Rgbx>(physical_width)}](std::size_t row) mutable {
+          Rgbx* physical = line.physical.empty() ? nullptr : line.physical.data();
+          shader.shade(row, line.display.data(), physical);
+          developer.develop(line.display.data(), physical, row * width, width, image);
+        };
+  });
+}
+
 Image Renderer::render(const Look& look) {
+  Image image;
+  render(look, {}, image);
+  return image;
+}
+
+void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   // Step 1: textures and tables.
   Shading shading = prepare(look);
-  // Step 2: shade, unless only the development changed.
-  if (shaded_ != shading) {
-    shaded_.reset();
-    radiance_.display.assign(dataset_.pixels(), {});
-    radiance_.physical.assign(has_physical(shading) ? dataset_.pixels() : 0, {});
-    const int rows = dataset_.manifest.height, bands = (rows + kBandRows - 1) / kBandRows;
-    tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const auto& range) {
-      for (int band = range.begin(); band < range.end(); ++band)
-        shade_rows(dataset_, shading, band * kBandRows, std::min(rows, (band + 1) * kBandRows), radiance_);
-    });
-    shaded_ = std::move(shading);
-    textures_.prune();
+  set_size(image, dataset_.manifest.width, dataset_.manifest.height, parts);
+  // Step 2: shade line by line, unless only the development changed. Radiance is kept where the white must be
+  // found in it, and from the second picture of the same shading on.
+  const bool physical = has_physical(shading),
+             white_known = !physical || look.develop.white_cd_m2.has_value();
+  const bool same = shaded_ == shading;
+  if (!same) kept_ = false;
+  shaded_.reset();
+  if (!kept_ && (same || !white_known)) {
+    keep_radiance(shading);
+    kept_ = true;
   }
   // Step 3: develop.
-  return develop(radiance_, dataset_.manifest.width, dataset_.manifest.height, look.develop);
+  image.white_cd_m2 = 1;
+  if (physical) image.white_cd_m2 = white_known ? *look.develop.white_cd_m2 : auto_white_cd_m2(radiance_);
+  if (kept_) {
+    develop_kept(look.develop, image);
+  } else {
+    shade_and_develop(shading, look.develop, image);
+  }
+  if (!same) textures_.prune();
+  shaded_ = std::move(shading);
 }
 
 }  // namespace nullcone::postrender

@@ -16,20 +16,34 @@ namespace nullcone::postrender {
 class Renderer {
  public:
   /// Throws InputError when the columns do not fit the manifest (counts, objects' numbers).
-  explicit Renderer(Dataset dataset);
+  explicit Renderer(Dataset dataset, const Kernel& kernel = *kernels().front());
 
   const Dataset& dataset() const { return dataset_; }
+
+  /// Step 1 of a picture: textures read, spectra tabulated. Throws InputError for textures that cannot be
+  /// read.
+  Shading prepare(const Look& look);
 
   /// Throws InputError for textures that cannot be read.
   Image render(const Look& look);
 
+  /// The same for viewers: only the parts that are asked for, in the memory that `image` already has.
+  void render(const Look& look, const ImageParts& parts, Image& image);
+
  private:
-  Shading prepare(const Look& look);
   std::size_t add_appearance(Shading& shading, const AppearanceLook& look, Rgb fallback, Effects effects);
 
+  template <class MakeWorker>
+  void for_each_row(MakeWorker&& make_worker) const;
+  void keep_radiance(const Shading& shading);
+  void develop_kept(const DevelopLook& look, Image& image) const;
+  void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const;
+
   Dataset dataset_;
+  const Kernel& kernel_;
   TextureCache textures_;
-  std::optional<Shading> shaded_;  ///< what radiance_ shows
+  std::optional<Shading> shaded_;  ///< of the last picture
+  bool kept_ = false;              ///< whether radiance_ shows it
   Radiance radiance_;
 };
 

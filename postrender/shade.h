@@ -1,17 +1,19 @@
 // Shading: from records and appearances to radiance.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <variant>
 #include <vector>
 
 #include "core/record/dataset.h"
+#include "postrender/kernel.h"
 #include "postrender/spectrum.h"
 #include "postrender/texture.h"
 
 namespace nullcone::postrender {
 
-using Texture = std::variant<ColorTexture, CheckerboardTexture, BilinearTexture, MipmapTexture>;
+using Texture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture>;
 using Spectrum = std::variant<DisplaySpectrum, BlackBodySpectrum>;
 
 /// How a surface looks, ready for pixels.
@@ -48,9 +50,47 @@ struct Shading {
 /// Whether any appearance radiates in cd/m^2.
 bool has_physical(const Shading& shading);
 
-/// Shades the rows [first_row, last_row) into `radiance`, whose vectors have the size of the picture.
-/// Crossings are composited front to back, L += transmittance * A * colour, until nothing shines through.
-void shade_rows(const Dataset& dataset, const Shading& shading, int first_row, int last_row,
-                Radiance& radiance);
+/// Shades scan lines; holds the working memory of one thread. Crossings are composited front to back,
+/// L += transmittance * A * colour, until nothing shines through: one rank after the other, and in it one run
+/// of pixels of the same appearance after the other.
+class LineShader {
+ public:
+  LineShader(const Dataset& dataset, const Shading& shading, const Kernel& kernel);
+
+  /// Writes the line's pixels; `physical` may be null where nothing is.
+  void shade(std::size_t row, Rgbx* display, Rgbx* physical);
+
+ private:
+  /// A scan line of crossings that do not stand side by side in the dataset, or of none.
+  struct Expanded {
+    std::size_t row, rank;
+    std::vector<std::uint32_t> id, order;
+    std::vector<float> u, v, shift, opacity;
+    Layer layer() const;
+  };
+  /// Whether every pixel of a line has one crossing.
+  struct Counts {
+    std::size_t row;
+    bool one_each;
+  };
+  Layer layer(std::ptrdiff_t row, std::size_t rank);
+  bool one_each(std::size_t row);
+  bool anything_seen(std::size_t row, std::size_t rank);
+  void find_appearances(std::size_t row, std::size_t rank, const Layer& here);
+  void estimate_footprints(std::size_t row, std::size_t rank);
+  void shade_run(const Appearance& appearance, const Run& run, Rgbx* display, Rgbx* physical);
+
+  const Dataset& dataset_;
+  const Shading& shading_;
+  const Kernel& kernel_;
+  std::size_t width_, height_;
+  std::array<Expanded, 3> expanded_;  ///< by row modulo 3
+  std::array<Counts, 3> counts_;      ///< likewise
+  Expanded nothing_;                  ///< above the first and below the last line
+  std::vector<std::uint32_t> appearance_;
+  std::vector<float> transmittance_, weight_, steps_;
+  std::array<std::vector<float>, 4> footprints_;
+  std::vector<Rgbx> colors_;
+};
 
 }  // namespace nullcone::postrender

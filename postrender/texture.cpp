@@ -1,16 +1,14 @@
 #include "postrender/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace nullcone::postrender {
 
 namespace {
 
-/// Positions beyond this are as good as lost in float, and would not fit an int.
-constexpr float kFarthest = 1e6f;
-
-float finite_or_zero(float x) { return std::abs(x) < kFarthest ? x : 0.0f; }
+constexpr std::int32_t kTile = 4;
 
 /// Area averages of `count` items (a `stride` apart) to `fewer` items, along one axis.
 struct Shrink {
@@ -47,74 +45,80 @@ TextureLevel halved(const TextureLevel& full) {
   return half;
 }
 
-/// The mean of the square wave (-1)^floor(x) over [x - width/2, x + width/2]: its integral is a triangle
-/// wave.
-float square_wave_mean(float x, float width) {
-  const float first = x - width / 2, last = x + width / 2;
-  if (!(std::floor(first) < std::floor(last))) return std::fmod(std::floor(x), 2.0f) == 0.0f ? 1.0f : -1.0f;
-  const auto triangle = [](float y) {
-    const float phase = y - 2 * std::floor(y / 2);
-    return phase < 1 ? phase : 2 - phase;
-  };
-  return std::clamp((triangle(last) - triangle(first)) / (last - first), -1.0f, 1.0f);
+/// The nearest half float; too small is 0, too large the largest, and what is not a number 0.
+std::int16_t half_float(float x) {
+  constexpr float kSmallest = 6.103515625e-5f, kLargest = 65504;
+  if (!(std::abs(x) >= kSmallest)) return 0;
+  auto bits = std::bit_cast<std::uint32_t>(std::min(std::abs(x), kLargest));
+  bits += 0xfffU + ((bits >> 13) & 1U);  // to nearest, ties to even
+  const std::uint32_t half = (bits >> 13) - (112U << 10);
+  return static_cast<std::int16_t>(x < 0 ? half | 0x8000U : half);
+}
+
+/// Binary exponent that brings the largest component to [2^14, 2^15), the top of half floats.
+int normalising_exponent(const TextureLevel& full) {
+  float largest = 0;
+  for (const Rgb c : full.texels)
+    for (const float component : {c.r, c.g, c.b})
+      if (std::isfinite(component)) largest = std::max(largest, std::abs(component));
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return std::clamp(15 - exponent, -14, 60);
+}
+
+/// Texels in rows of tiles; what sticks out over the image is never read.
+std::int32_t texels_a_tile_row(const TextureLevel& level) {
+  return (level.width + kTile - 1) / kTile * kTile * kTile;
+}
+
+void append_tiles(const TextureLevel& level, int exponent, std::vector<Texel>& texels) {
+  const std::size_t first = texels.size();
+  const std::int32_t pitch = texels_a_tile_row(level);
+  texels.resize(first + static_cast<std::size_t>(pitch) *
+                            static_cast<std::size_t>((level.height + kTile - 1) / kTile));
+  const float scale = std::ldexp(1.0f, exponent);
+  for (int j = 0; j < level.height; ++j) {
+    Texel* row =
+        texels.data() + first + static_cast<std::size_t>(j / kTile) * static_cast<std::size_t>(pitch);
+    for (int i = 0; i < level.width; ++i) {
+      const Rgb c = scale * level.texel(i, j);
+      row[i / kTile * kTile * kTile + j % kTile * kTile + i % kTile] = {half_float(c.r), half_float(c.g),
+                                                                        half_float(c.b), 0};
+    }
+  }
 }
 
 }  // namespace
 
-Rgb TextureLevel::bilinear(float u, float v) const {
-  u = finite_or_zero(u);
-  v = finite_or_zero(v);
-  // Step 1: the position in texels, wrapped and clamped.
-  const float x = (u - std::floor(u)) * static_cast<float>(width) - 0.5f;
-  const float y =
-      std::clamp((1 - v) * static_cast<float>(height) - 0.5f, 0.0f, static_cast<float>(height - 1));
-  const float left = std::floor(x);
-  const float s = x - left;
-  int i0 = static_cast<int>(left);
-  if (i0 < 0) i0 = width - 1;
-  if (i0 >= width) i0 = 0;
-  const int i1 = i0 + 1 == width ? 0 : i0 + 1;
-  const int j0 = static_cast<int>(y), j1 = std::min(j0 + 1, height - 1);
-  // Step 2: the four neighbours.
-  return mix(mix(texel(i0, j0), texel(i1, j0), s), mix(texel(i0, j1), texel(i1, j1), s),
-             y - static_cast<float>(j0));
+Rgb Pyramid::texel(std::size_t level, int i, int j) const {
+  const LevelView& at = levels[level];
+  const Texel& found = texels[static_cast<std::size_t>(at.first + i / kTile * kTile * kTile + i % kTile +
+                                                       j / kTile * at.row_of_tiles + j % kTile * kTile)];
+  const auto decoded = [&](std::int16_t half) {
+    const auto bits = (static_cast<std::uint32_t>(static_cast<std::int32_t>(half)) << 13) & 0x8fffe000U;
+    return unit * (std::bit_cast<float>(bits) * 0x1p112f);
+  };
+  return {decoded(found[0]), decoded(found[1]), decoded(found[2])};
 }
 
-Rgb Pyramid::trilinear(float u, float v, const Footprint& f) const {
-  const TextureLevel& full = levels.front();
-  const auto w = static_cast<float>(full.width), h = static_cast<float>(full.height);
-  const float right = f.u_right * f.u_right * w * w + f.v_right * f.v_right * h * h;
-  const float down = f.u_down * f.u_down * w * w + f.v_down * f.v_down * h * h;
-  const float longest = std::max(right, down);
-  if (!(longest > 1)) return full.bilinear(u, v);
-  const float level = std::min(0.5f * std::log2(longest), static_cast<float>(levels.size() - 1));
-  const auto below = static_cast<std::size_t>(level);
-  const std::size_t above = std::min(below + 1, levels.size() - 1);
-  return mix(levels[below].bilinear(u, v), levels[above].bilinear(u, v), level - static_cast<float>(below));
-}
-
-std::size_t Pyramid::bytes() const {
-  std::size_t sum = 0;
-  for (const TextureLevel& level : levels) sum += level.texels.size() * sizeof(Rgb);
-  return sum;
+std::vector<TextureLevel> halvings(TextureLevel full) {
+  std::vector<TextureLevel> out;
+  out.push_back(std::move(full));
+  while (out.back().width > 1 || out.back().height > 1) out.push_back(halved(out.back()));
+  return out;
 }
 
 Pyramid make_pyramid(TextureLevel full) {
-  Pyramid pyramid;
-  pyramid.levels.push_back(std::move(full));
-  while (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)
-    pyramid.levels.push_back(halved(pyramid.levels.back()));
-  return pyramid;
-}
-
-Rgb CheckerboardTexture::operator()(float u, float v, const Footprint& f) const {
-  u = finite_or_zero(u) - std::floor(finite_or_zero(u));
-  // v = 1 belongs to the topmost squares.
-  v = std::clamp(finite_or_zero(v), 0.0f, 1 - 1e-6f);
-  const float wave = square_wave_mean(u * counts[0], counts[0] * (std::abs(f.u_right) + std::abs(f.u_down))) *
-                     square_wave_mean(v * counts[1], counts[1] * (std::abs(f.v_right) + std::abs(f.v_down)));
-  const float s = axis == 0 ? u : v;
-  return mix(mix(odd[0], odd[1], s), mix(even[0], even[1], s), 0.5f + 0.5f * wave);
+  const int exponent = normalising_exponent(full);
+  Pyramid out;
+  out.unit = std::ldexp(1.0f, -exponent);
+  const std::vector<TextureLevel> levels = halvings(std::move(full));
+  for (const TextureLevel& level : levels) {
+    out.levels.push_back(
+        {level.width, level.height, texels_a_tile_row(level), static_cast<std::int32_t>(out.texels.size())});
+    append_tiles(level, exponent, out.texels);
+  }
+  return out;
 }
 
 }  // namespace nullcone::postrender

@@ -1,0 +1,177 @@
+// How fast pictures are made of a dataset in memory, 1280 x 1024 with every pixel hit: stages, whole frames.
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "postrender/develop.h"
+#include "postrender/renderer.h"
+
+namespace {
+
+using namespace nullcone;
+using namespace nullcone::postrender;
+
+constexpr int kWidth = 1280, kHeight = 1024;
+constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+
+/// A world map over the whole picture, warped a little, 1.6 texels a pixel; `turned` by a right angle.
+Dataset world(bool turned) {
+  Dataset out;
+  out.manifest.width = kWidth;
+  out.manifest.height = kHeight;
+  out.manifest.objects = {{"earth"}};
+  for (int row = 0; row < kHeight; ++row)
+    for (int column = 0; column < kWidth; ++column) {
+      const float x = (static_cast<float>(column) + 0.5f) / kWidth;
+      const float y = (static_cast<float>(row) + 0.5f) / kHeight;
+      const float u = turned ? y : x, v = turned ? x : 1 - y;
+      Hits& hits = out.hits;
+      hits.u.push_back(u + 0.01f * std::sin(20 * v));
+      hits.v.push_back(v + 0.01f * std::sin(20 * u));
+      hits.shift.push_back(1 / (1 + 0.4f * std::cos(6 * x)));
+      hits.Z.push_back(1);
+      hits.A.push_back(1);
+      hits.id.push_back(1);
+      hits.order.push_back(0);
+      hits.t.push_back(-1);
+      hits.tau.push_back(0);
+      hits.mu.push_back(1);
+      hits.offset.push_back(hits.u.size());
+    }
+  return out;
+}
+
+/// A texture of 2048 x 1024, or another kind by its name, on a black body or as it is.
+Look look_of(const std::string& texture, bool black_body, const Manifest& manifest) {
+  nlohmann::json earth = nlohmann::json::object();
+  if (texture == "checkerboard")
+    earth["texture"] = {{"type", texture}, {"counts", {36, 18}}, {"colors", {{1, 1, 1}, {0, 0, 0.5}}}};
+  if (texture == "mipmap" || texture == "bilinear")
+    earth["texture"] = {
+        {"type", "image"}, {"file", "/usr/share/xplanet/images/earth.jpg"}, {"filter", texture}};
+  if (black_body) earth["spectrum"] = {{"type", "black_body"}, {"temperature_K", 5762}};
+  const nlohmann::json look = {{"objects", {{"earth", earth}}},
+                               {"exposure", {{"white_cd_m2", 3e9}}},
+                               {"tone", {{"curve", "exponential"}, {"k", 1}}}};
+  return parse_look(look, {"bench", "", ""}, manifest);
+}
+
+void count_pixels(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPixels));
+}
+
+/// Whole frames on the number of threads of the argument; the shading changes every time, as when a
+/// temperature is dragged.
+void frames(benchmark::State& state, const std::string& texture, bool black_body, bool turned,
+            ImageParts parts) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
+  Renderer renderer(world(turned));
+  Look look = look_of(texture, black_body, renderer.dataset().manifest);
+  Image image;
+  renderer.render(look, parts, image);
+  for ([[maybe_unused]] auto _ : state) {
+    look.background.r += 1e-6f;
+    renderer.render(look, parts, image);
+    benchmark::ClobberMemory();
+  }
+  count_pixels(state);
+}
+constexpr ImageParts kLinear{.exposed = false, .display = true, .encoded = false};
+constexpr ImageParts kEncoded{.exposed = false, .display = false, .encoded = true};
+constexpr ImageParts kAll{};
+#define NULLCONE_FRAMES(name, ...)             \
+  BENCHMARK_CAPTURE(frames, name, __VA_ARGS__) \
+      ->Arg(1)                                 \
+      ->Arg(2)                                 \
+      ->MeasureProcessCPUTime()                \
+      ->UseRealTime()                          \
+      ->Unit(benchmark::kMillisecond)
+NULLCONE_FRAMES(black_body_mipmap, "mipmap", true, false, kLinear);
+NULLCONE_FRAMES(black_body_mipmap_turned, "mipmap", true, true, kLinear);
+NULLCONE_FRAMES(black_body_mipmap_encoded, "mipmap", true, false, kEncoded);
+NULLCONE_FRAMES(black_body_mipmap_all_parts, "mipmap", true, false, kAll);
+NULLCONE_FRAMES(black_body_bilinear, "bilinear", true, false, kLinear);
+
+/// Frames of which only the exposure changes.
+void development(benchmark::State& state) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
+  Renderer renderer(world(false));
+  Look look = look_of("mipmap", true, renderer.dataset().manifest);
+  Image image;
+  for (int i = 0; i < 2; ++i) renderer.render(look, kLinear, image);
+  for ([[maybe_unused]] auto _ : state) {
+    look.develop.ev += 1e-6;
+    renderer.render(look, kLinear, image);
+  }
+  count_pixels(state);
+}
+BENCHMARK(development)->Arg(1)->Arg(2)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+
+/// One stage on one thread, with one of the kernels: stage(line of the picture).
+template <class Stage>
+void time_lines(benchmark::State& state, Stage&& stage) {
+  for ([[maybe_unused]] auto _ : state) {
+    for (std::size_t row = 0; row < kHeight; ++row) stage(row);
+    benchmark::ClobberMemory();
+  }
+  count_pixels(state);
+}
+
+void shade(benchmark::State& state, const Kernel* kernel, const std::string& texture, bool black_body) {
+  const Dataset dataset = world(false);
+  const Look look = look_of(texture, black_body, dataset.manifest);
+  const Shading shading = Renderer(dataset).prepare(look);
+  LineShader shader(dataset, shading, *kernel);
+  std::vector<Rgbx> display(kWidth), physical(kWidth);
+  time_lines(state, [&](std::size_t row) { shader.shade(row, display.data(), physical.data()); });
+}
+
+void develop(benchmark::State& state, const Kernel* kernel, const ImageParts& parts) {
+  const DevelopLook look = look_of("mipmap", true, world(false).manifest).develop;
+  std::vector<Rgbx> display(kWidth), physical(kWidth);
+  for (std::size_t i = 0; i < kWidth; ++i) physical[i] = {1e6f * static_cast<float>(i % 97), 1e9f, 2e8f};
+  Image image;
+  set_size(image, kWidth, kHeight, parts);
+  image.white_cd_m2 = 3e9;
+  LineDeveloper developer(look, *kernel);
+  time_lines(state, [&](std::size_t row) {
+    developer.develop(display.data(), physical.data(), row * kWidth, kWidth, image);
+  });
+}
+
+/// The yardstick: the bytes of a linear picture.
+void copy(benchmark::State& state) {
+  const std::vector<Rgb> from(kPixels, Rgb{1, 1, 1});
+  std::vector<Rgb> to(kPixels);
+  for ([[maybe_unused]] auto _ : state) {
+    std::memcpy(to.data(), from.data(), kPixels * sizeof(Rgb));
+    benchmark::ClobberMemory();
+  }
+  count_pixels(state);
+}
+BENCHMARK(copy)->Unit(benchmark::kMillisecond);
+
+[[maybe_unused]] const bool registered = [] {
+  for (const Kernel* kernel : kernels()) {
+    const auto add = [&](const std::string& name, auto&&... arguments) {
+      benchmark::RegisterBenchmark((name + "/" + std::string(kernel->isa)).c_str(), arguments...)
+          ->Unit(benchmark::kMillisecond);
+    };
+    add("shade/color", shade, kernel, "color", false);
+    add("shade/checkerboard", shade, kernel, "checkerboard", false);
+    add("shade/bilinear", shade, kernel, "bilinear", false);
+    add("shade/mipmap", shade, kernel, "mipmap", false);
+    add("shade/black_body", shade, kernel, "color", true);
+    add("shade/black_body_mipmap", shade, kernel, "mipmap", true);
+    add("develop/linear", develop, kernel, kLinear);
+    add("develop/encoded", develop, kernel, kEncoded);
+  }
+  return true;
+}();
+
+}  // namespace

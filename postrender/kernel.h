@@ -1,0 +1,90 @@
+// The pixel loops of post-rendering, compiled once for each instruction set (kernel.cpp) and chosen at run
+// time. All give the same bits. They work on runs: neighbouring pixels of a scan line that look alike.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "postrender/black_body.h"
+#include "postrender/image.h"
+#include "postrender/texture.h"
+
+namespace nullcone::postrender {
+
+/// Crossings of the same rank along a scan line, one a column; `id` is 0 where a pixel has none.
+struct Layer {
+  const std::uint32_t *id, *order;
+  const float *u, *v, *shift, *opacity;
+};
+
+/// How far (u, v) moves from one pixel to the next, to the right and down; signs mean nothing.
+struct Footprints {
+  float *u_right, *v_right, *u_down, *v_down;
+};
+
+/// What shading reads of a run of pixels.
+struct Run {
+  std::size_t count;
+  const float *u, *v, *shift;
+  const float* weight;  ///< transmittance in front of it times its opacity
+  Footprints footprints;
+};
+
+struct ImageView {
+  const LevelView* levels;
+  float last_level;
+  const Texel* texels;
+  float unit;
+  UvTransform uv;
+  bool mipmap;
+};
+
+struct BlackBodyView {
+  const BlackBodyNode* nodes;
+  float temperature_K;
+  bool doppler, searchlight;
+  Rgbx at_rest;
+};
+
+/// The appearance of a pixel without a crossing, or behind an opaque one.
+inline constexpr std::uint32_t kUnseen = 0xffffffff;
+
+/// Three components of a run of pixels.
+struct Planes {
+  float *r, *g, *b;
+};
+
+/// Functions of one instruction set.
+struct Kernel {
+  std::string_view isa;
+  /// Of the middle one of three scan lines: see kernel_footprint.h. `scratch` holds 3 (width + 1) floats.
+  void (*footprints)(const std::array<Layer, 3>& lines, std::size_t width, const Footprints& out,
+                     float* scratch);
+  /// Weights of the crossings of a rank, and what shines through to the next one. Pixels that are not seen
+  /// any more lose their appearance.
+  void (*weigh)(const float* opacity, std::size_t count, float* transmittance, float* weight,
+                std::uint32_t* appearance);
+  // The texture's colours along a run.
+  void (*image)(const ImageView& image, const Run& run, Rgbx* out);
+  void (*checkerboard)(const CheckerboardTexture& board, const Run& run, Rgbx* out);
+  // sum += weight * what is seen of a surface that is coloured so.
+  void (*display)(bool searchlight, const Run& run, const Rgbx* colors, Rgbx* sum);
+  void (*black_body)(const BlackBodyView& body, const Run& run, const Rgbx* colors, Rgbx* sum);
+  /// sum += transmittance * color.
+  void (*background)(const float* transmittance, const Rgbx& color, std::size_t count, Rgbx* sum);
+  // Development, in place but for the first and the last step.
+  void (*expose)(const Rgbx* display, float gain, const Rgbx* physical, float physical_gain,
+                 std::size_t count, const Planes& out);
+  void (*exponential_curve)(float k, std::size_t count, const Planes& colors);
+  void (*desaturate)(std::size_t count, const Planes& colors);
+  void (*clip)(std::size_t count, const Planes& colors);
+  void (*interleave)(const Planes& colors, std::size_t count, Rgb* out);
+};
+
+/// All that this machine can run, the widest first.
+std::span<const Kernel* const> kernels();
+
+}  // namespace nullcone::postrender
