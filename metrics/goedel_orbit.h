@@ -156,7 +156,7 @@ inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding
   tilt = Goedel::kSqrt2 * gamma * gamma * beta / a;
   find_box(frame);
   find_farthest(frame);
-  // Upper bounds of what 4,000 rays each at speeds up to 0.99 showed (bench notes; held by a test).
+  // Upper bounds of what 4,000 rays each at speeds up to 0.99 showed (tests/orbit_bounds_test.cpp).
   const double size = farthest / a, lean = tilt * farthest;
   stretch = std::exp(0.7 * size + 0.65 * lean);
   bend = (1.3 * tilt * a * std::exp(1.8 * lean) + 1.2 * size * std::exp(1.2 * size)) / a;

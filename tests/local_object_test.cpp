@@ -140,5 +140,41 @@ TEST(FallingSphere, ShiftTendsToThePointFormula) {
   }
 }
 
+/// A traced sphere, smaller and smaller: its shift closes in on the point's, with R.
+TEST(FallingSphere, TracedShiftTendsToThePointFormula) {
+  for (const json& c : cases_of("godel_frequency_shift")) {
+    const double alpha = c["inputs"]["emitter_alpha"], beta = c["inputs"]["emitter_beta"],
+                 g = c["expected"]["g"];
+    const Vec3<double> view = to_vec3(c["expected"]["view_dir_xyz"]);
+    double before = 1;
+    for (const double R : {0.03, 0.003, 0.0003}) {
+      json scene = {{"metric", {{"name", "goedel"}}}, {"max_lookback", 6}};
+      scene["observer"]["event"] = {c["expected"]["arrival_time"], 0, 0, 0};
+      const double fov = std::min(60.0, 400 * R);
+      scene["camera"] = {{"type", "panorama"},
+                         {"azimuth_deg", std::atan2(view[1], view[0]) * 180 / std::numbers::pi},
+                         {"fov_deg", {fov, fov}},
+                         {"resolution", {64, 64}}};
+      const json worldline = {{"type", "geodesic"},
+                              {"event", {0, 0, 0, 0}},
+                              {"velocity", {beta * std::cos(alpha), beta * std::sin(alpha), 0}}};
+      scene["objects"] = {{{"name", "ball"},
+                           {"shape", {{"type", "sphere"}, {"radius", R}}},
+                           {"placing", {{"type", "local"}, {"worldline", worldline}}}}};
+      const Traced traced = trace_text(scene.dump());
+      double farthest = 0;
+      std::size_t count = 0;
+      traced.for_each_hit([&](const HitRecord& h, std::size_t, std::size_t) {
+        farthest = std::max(farthest, std::fabs(h.shift - g));
+        ++count;
+      });
+      ASSERT_GT(count, 20U) << c["id"] << " R " << R;
+      EXPECT_LT(farthest, 8 * g * R) << c["id"];  // gradients of g are of order g/a
+      EXPECT_LT(farthest, 0.2 * before) << c["id"];
+      before = farthest;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace nullcone::test
