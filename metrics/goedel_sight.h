@@ -9,13 +9,6 @@
 
 NULLCONE_KERNEL_BEGIN
 
-/// asinh |q|: half the distance from the axis in units of a.
-template <class S>
-S asinh_of(const Complex<S>& q) {
-  const S u2 = norm2(q), u = sqrt(u2);
-  return log(u + sqrt(S(1.0) + u2));
-}
-
 /// When a ray is near the axis of its chart. In the plane every geodesic is a circle of H^2, and
 /// |q|^2 = C - A cos 2(psi - psi_m): so the distance from the axis is below a given one in one window of
 /// every period pi of psi, or never. In z the ray moves uniformly.

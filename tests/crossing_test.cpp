@@ -26,6 +26,13 @@ int rays(int full) {
 
 constexpr Matrix3<double> kAxes = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
 
+/// asinh |q|: half the distance from the axis in units of a.
+template <class S>
+S asinh_of(const Complex<S>& q) {
+  const S u2 = norm2(q), u = sqrt(u2);
+  return log(u + sqrt(S(1.0) + u2));
+}
+
 /// Entry of the first piece of [from, to] with depth(lambda) < 0, or -1. `reach(lambda, half)` is true if the
 /// sphere may be met within half of lambda.
 double oracle(double from, double to, const std::function<double(double)>& depth,

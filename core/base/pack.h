@@ -56,7 +56,6 @@ inline double floor(double x) { return __builtin_floor(x); }
 inline double select(bool choose, double a, double b) { return choose ? a : b; }
 inline bool any(bool mask) { return mask; }
 inline bool all(bool mask) { return mask; }
-inline double sum(double x) { return x; }
 
 // The reference: long double with the library's functions.
 inline SinCos<long double> sincos(long double x) { return {std::sin(x), std::cos(x)}; }

@@ -1,6 +1,5 @@
 #include "core/record/dataset_file.h"
 
-#include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineInputPart.h>
