@@ -17,6 +17,29 @@ struct GoedelGuard {
   S psi_m, half_width, psi_rate;  ///< half_width < 0: never
   S z0, z_rate, ball;
 
+  /// A first sieve without divisions and roots: false for rays whose least distance from the axis is surely
+  /// greater than the ball, or that move away from it along z. Least |q|^2 <= u^2 means
+  /// Im(conj(q0) w)^2 <= 2 C u^2 - u^4, here times (kappa k0)^2.
+  static Mask<S> may_meet(const Goedel& metric, const Vec4<double>& start, const Vec4<S>& k,
+                          double bounding_radius) {
+    const Complex<double> q0 = metric.to_q(start);
+    const double q2 = norm2(q0), p0 = cosh_of(q0) / Goedel::kSqrt2,
+                 ball = padded(metric, q2, bounding_radius);
+    const double u = 0.5 / metric.a * ball, u2 = u * u;
+    const S kappa2 = k[0] * k[0] - S(0.5) * (k[1] * k[1] + k[2] * k[2]);
+    const Complex<S> w = {S(p0) * k[1] + S(q0.im) * k[0], S(p0) * k[2] - S(q0.re) * k[0]};
+    const S moment = S(q0.re) * w.im - S(q0.im) * w.re, w2 = norm2(w);
+    const auto in_plane =
+        moment * moment <= (S(q2) * kappa2 + w2) * S(u2) - kappa2 * S(u2 * u2) + S(1e-14 * q2) * w2;
+    if (std::fabs(start[3]) <= ball) return in_plane;
+    return in_plane & (S(start[3]) * k[3] < S(0.0));
+  }
+  /// The bounding radius with a little room for rounding at |q|^2 = q2.
+  template <class T>
+  static T padded(const Goedel& metric, const T& q2, double bounding_radius) {
+    return T(bounding_radius * (1 + 1e-12)) + T(1e-13 * metric.a) * (T(1.0) + q2);
+  }
+
   GoedelGuard(const Goedel::Path<S>& path, double bounding_radius) {
     const double a = path.metric->a;
     // Q = q0 cos psi + w sin psi (PHYSICS 2.2), so |Q|^2 = C + D cos 2 psi + E sin 2 psi.
@@ -27,7 +50,7 @@ struct GoedelGuard {
     const S C = S(0.5) * (q2 + w2), D = S(0.5) * (q2 - w2), A = sqrt(D * D + product.re * product.re);
     // Least |Q|^2 without cancellation: C^2 - A^2 = Im(conj(q0) w)^2. A little room covers rounding.
     const S least = product.im * product.im / (C + A + S(1e-300));
-    ball = S(bounding_radius * (1 + 1e-12)) + S(1e-13 * a) * (S(1.0) + q2);
+    ball = padded(*path.metric, q2, bounding_radius);
     psi_rate = S(1 / (Goedel::kSqrt2 * a)) * path.kappa * abs(path.k0);
     z0 = path.z0;
     z_rate = path.n_z * path.k0;

@@ -37,16 +37,20 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape) 
         {metric, event, false, axes, ball}, {metric, event, axes}, shape};
 
   if (placing.worldline.is_static() && !placing.gyroscope_axes)
-    return Placed<RestPlacing<M>, RestBody<M>, Shape>{
-        {metric, event, true, axes, ball}, {metric, event, axes}, shape};
+    return Placed<RestPlacing<M>, RestBody, Shape>{{metric, event, true, axes, ball}, {axes}, shape};
 
-  LocalFrame<M> frame{
-      metric, event, four_velocity(Vec3<double>{placing.worldline.velocity}), placing.gyroscope_axes,
-      {},     axes};
+  // The frame of an object at rest stands in its own chart, at the origin.
+  const bool rests = placing.worldline.is_static() && Shape::isotropic;
+  LocalFrame<M> frame{metric,
+                      rests ? Vec4<double>{} : event,
+                      four_velocity(Vec3<double>{placing.worldline.velocity}),
+                      placing.gyroscope_axes,
+                      {},
+                      axes};
   if (frame.gyroscope) frame.prepare();
   const LocalBody<M> body{frame, make_orbit(frame, ball)};
   if constexpr (Shape::isotropic)
-    if (placing.worldline.is_static())
+    if (rests)
       return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, ball}, body, shape};
   return Placed<MovingPlacing<M>, LocalBody<M>, Shape>{{frame, body.orbit, Shape::isotropic}, body, shape};
 }
@@ -129,8 +133,10 @@ class SceneTracer final : public Tracer {
       unfit.reason = "is too large: parts of it would have to move faster than light";
       return false;
     }
-    const double tau = local_time(placed.body, observation_, placed.body.first_guess(observation_));
-    const Vec3<double> here = placed.body.local(observation_, tau).second;
+    const Vec4<double> observer =
+        placed.placing.path(placed.placing.launch(observation_), u_camera_).at(0.0).event;
+    const double tau = local_time(placed.body, observer, placed.body.first_guess(observer));
+    const Vec3<double> here = placed.body.local(observer, tau).second;
     if (placed.shape.hides(here)) {
       unfit.reason = shape.type == ShapeType::quad ? "holds the observer in its surface"
                      : shape.dome

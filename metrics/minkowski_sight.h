@@ -13,6 +13,14 @@ template <class S>
 struct MinkowskiGuard {
   S entry, exit;  ///< in lambda; an empty interval: never
 
+  static Mask<S> may_meet(const Minkowski&, const Vec4<double>& start, const Vec4<S>& k,
+                          double bounding_radius) {
+    const Vec3<double> X = spatial(start);
+    const Vec3<S> direction = spatial(k), moment = cross(convert<S>(X), direction);
+    const S ball(bounding_radius * (1 + 1e-9) + 1e-14 * norm(X));
+    return dot(moment, moment) <= ball * ball * dot(direction, direction);
+  }
+
   MinkowskiGuard(const Minkowski::Path<S>& path, double bounding_radius) {
     const Vec3<S> X = spatial(path.start), k = spatial(path.k), moment = cross(X, k);
     const S ball = S(bounding_radius * (1 + 1e-12)) + S(4e-15) * norm(X), k2 = dot(k, k);

@@ -59,19 +59,11 @@ Search<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, con
   return search;
 }
 
-/// The object's proper time at an event: Newton's method from `tau`, a lane at its own pace.
+/// The object's proper time at an event.
 template <class Body, class S>
-S local_time(const Body& body, const Vec4<S>& event, S tau) {
+S local_time(const Body& body, const Vec4<S>& event, const S& tau) {
   using D = Dual<S, 1>;
-  const auto x = convert<D>(event);
-  auto active = tau == tau;
-  for (int i = 0; i < 12 && any(active); ++i) {
-    const D late = body.local(x, D::variable(tau, 0)).first;
-    const S step = late.v / late.d[0];
-    tau = select(active, tau - step, tau);
-    active = active & (abs(step) > S(1e-15) * (S(1.0) + abs(tau)));
-  }
-  return tau;
+  return time_of_zero([&](const D& time) { return body.local(convert<D>(event), time).first; }, tau);
 }
 
 /// A crossing as the object sees it.

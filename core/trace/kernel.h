@@ -19,7 +19,7 @@ struct Placed {
 };
 template <class M>
 using AnyPlaced =
-    std::variant<Placed<RestPlacing<M>, RestBody<M>, Sphere>, Placed<RestPlacing<M>, RestBody<M>, Quad>,
+    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, Quad>,
                  Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Quad>,
                  Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
                  Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
@@ -120,8 +120,11 @@ std::size_t list_candidates(const Placing& placing, const Vec4<double>& event, B
   const auto launch = placing.launch(event);
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
     const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
+    const Mask<S> may_meet = placing.may_meet(launch, k);
+    if (!any(may_meet)) continue;
     std::array<bool, Lanes<S>::count> near{};
-    Lanes<S>::store(placing.ray(launch, k).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i), near.data());
+    Lanes<S>::store(may_meet & (placing.ray(launch, k).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i)),
+                    near.data());
     for (std::size_t lane = 0; lane < near.size(); ++lane)
       if (near[lane] && i + lane < rays.count) rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
   }
@@ -181,7 +184,7 @@ struct Recorded {
 template <class S, Metric M, class Placing, class Body, class Shape>
 Recorded<S> record(const M& metric, const Placed<Placing, Body, Shape>& object,
                    const Vec4<double>& observation, const Vec4<S>& past, const S& found) {
-  const auto path = metric.path(convert<S>(observation), past);
+  const auto path = object.placing.path(object.placing.launch(observation), past);
   const Meeting<S> here = polish(path, object.body, object.shape, found);
   const PathPoint<S> P = path.at(here.lambda);
   const Matrix4<S> g = metric.g(P.event);
@@ -204,7 +207,7 @@ Recorded<S> record(const M& metric, const Placed<Placing, Body, Shape>& object,
           uv[0],
           uv[1],
           S(1.0) / frequency,
-          P.event[0] - S(observation[0]),
+          object.placing.time(P.event) - S(observation[0]),
           here.tau,
           min(mu, S(1.0))};
 }

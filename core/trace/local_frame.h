@@ -83,18 +83,25 @@ inline Vec3<double> golden_point(int n, int count) {
   return {{flat * c, flat * s, z}};
 }
 
-/// The proper time at which `event` is simultaneous with P in the rest frame: Newton's method from a first
-/// guess. NaN where there is none nearby.
+/// The proper time at which something is no longer late: Newton's method from `tau`, a lane at its own pace.
+/// `late` takes a Dual<S, 1>. NaN where there is none nearby.
+template <class S, class Lateness>
+S time_of_zero(const Lateness& late, S tau) {
+  auto active = tau == tau;
+  for (int i = 0; i < 20 && any(active); ++i) {
+    const Dual<S, 1> value = late(Dual<S, 1>::variable(tau, 0));
+    const S step = value.v / value.d[0];
+    tau = select(active, tau - step, tau);
+    active = active & (abs(step) > S(1e-15) * (S(1.0) + abs(tau)));
+  }
+  return tau;
+}
+
+/// The proper time at which `event` is simultaneous with P in the rest frame.
 template <Metric M>
 double proper_time(const LocalFrame<M>& frame, const Vec4<double>& event, double tau) {
   using D = Dual<double, 1>;
-  for (int i = 0; i < 20; ++i) {
-    const D late = frame.rest(convert<D>(event), D::variable(tau, 0))[0];
-    const double step = late.v / late.d[0];
-    tau -= step;
-    if (!(std::fabs(step) > 1e-15 * (1 + std::fabs(tau)))) break;
-  }
-  return tau;
+  return time_of_zero([&](const D& time) { return frame.rest(convert<D>(event), time)[0]; }, tau);
 }
 
 /// The chart components at P(tau) of the rest-frame axis `i` (1..3) that the Killing flow carries.

@@ -49,7 +49,8 @@ struct RestPlacing {
       return out;
     }
   };
-  /// What all rays from one event have in common: the event in the object's chart, and how the tetrad turns.
+  /// What all rays from one event have in common: the event in the object's chart (where a local object
+  /// stands at the origin), and how the tetrad turns.
   struct Launch {
     Vec4<double> start;
     Complex<double> turn;
@@ -58,10 +59,26 @@ struct RestPlacing {
     if (!local) return {event, {1, 0}};
     return {metric.to_origin(place, event), metric.turn(place, event)};
   }
-  /// The ray with past-directed tangent k (static tetrad) at the event.
+  /// A quick sieve: false for rays that surely never meet the bounding ball.
+  template <class S>
+  Mask<S> may_meet(const Launch& launch, const Vec4<S>& k) const {
+    if (!local) return k[0] == k[0];
+    using Guard = decltype(std::declval<Ray<S>>().guard);
+    return Guard::may_meet(metric, launch.start, turned_about_e3(launch.turn, k), ball);
+  }
+  /// The path with past-directed tangent k (static tetrad) at the event, in the object's chart.
+  template <class S>
+  auto path(const Launch& launch, const Vec4<S>& k) const {
+    return metric.path(convert<S>(launch.start), turned_about_e3(launch.turn, k));
+  }
   template <class S>
   Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
-    return {this, metric.path(convert<S>(launch.start), turned_about_e3(launch.turn, k))};
+    return {this, path(launch, k)};
+  }
+  /// Chart time of an event that is given in the object's chart.
+  template <class S>
+  S time(const Vec4<S>& event) const {
+    return local ? metric.from_origin(convert<S>(place), event)[0] : event[0];
   }
 };
 
@@ -129,12 +146,25 @@ struct MovingPlacing {
   };
   Launch launch(const Vec4<double>& event) const { return {event, orbit.launch(event)}; }
   template <class S>
+  Mask<S> may_meet(const Launch&, const Vec4<S>& k) const {
+    return k[0] == k[0];
+  }
+  template <class S>
+  auto path(const Launch& launch, const Vec4<S>& k) const {
+    return frame.metric.path(convert<S>(launch.start), k);
+  }
+  template <class S>
   Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
-    return {this, frame.metric.path(convert<S>(launch.start), k), orbit.ray(launch.around, k)};
+    return {this, path(launch, k), orbit.ray(launch.around, k)};
+  }
+  template <class S>
+  S time(const Vec4<S>& event) const {
+    return event[0];
   }
 };
 
 /// For the record: lateness T' (zero at the object's proper time tau) and position X of an event, and back.
+/// Events are those of the placing's paths: where the object rests, they stand in its own chart.
 template <Metric M>
 struct LocalBody {
   LocalFrame<M> frame;
@@ -155,27 +185,22 @@ struct LocalBody {
   }
 };
 
-/// The same for an object at rest whose axes are tied to the static tetrad: the isometry of one event does it
-/// all.
-template <Metric M>
+/// The same for an object at rest at the origin of its own chart, with axes tied to the static tetrad.
 struct RestBody {
-  M metric;
-  Vec4<double> place;
   Matrix3<double> axes;
 
   template <class S>
   std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
-    const Vec4<S> x = metric.to_origin(convert<S>(place), event);
-    return {x[0] - tau, convert<S>(axes) * spatial(x)};
+    return {event[0] - tau, convert<S>(axes) * spatial(event)};
   }
   template <class S>
   Vec4<S> event(const S& tau, const Vec3<S>& X) const {
     const Vec3<S> x = X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
-    return metric.from_origin(convert<S>(place), Vec4<S>{{tau, x[0], x[1], x[2]}});
+    return {{tau, x[0], x[1], x[2]}};
   }
   template <class S>
   S first_guess(const Vec4<S>& event) const {
-    return metric.to_origin(convert<S>(place), event)[0];
+    return event[0];
   }
 };
 
