@@ -15,7 +15,7 @@ struct Goedel {
 
   static constexpr std::string_view name = "goedel";
   static constexpr std::tuple parameters{Parameter<Goedel>{"a", &Goedel::a, 1e-6, 1e15}};
-  static constexpr bool flat_at_infinity = false;
+  static constexpr int skies = 0;
   static constexpr double kSqrt2 = 1.4142135623730950488;
 
   /// Rays repeat themselves in space after 2 pi a at most; two turns show every image twice.

@@ -2,6 +2,7 @@
 #include NULLCONE_METRIC_HEADER
 
 #include "core/trace/kernel.h"
+#include "core/trace/hamilton.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -228,7 +229,7 @@ class Kernel final : public Spacetime {
  public:
   std::string_view isa() const override { return NULLCONE_ISA_NAME; }
   MetricDescription description() const override {
-    MetricDescription out{M::name, {}, M::flat_at_infinity};
+    MetricDescription out{M::name, {}, skies_of<M>()};
     const M defaults;
     std::apply(
         [&](const auto&... p) {

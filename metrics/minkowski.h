@@ -10,7 +10,7 @@ NULLCONE_KERNEL_BEGIN
 struct Minkowski {
   static constexpr std::string_view name = "minkowski";
   static constexpr std::tuple<> parameters{};
-  static constexpr bool flat_at_infinity = true;  // rays escape, and a sky can be seen by direction
+  static constexpr int skies = 1;
 
   double default_lookback() const { return std::numeric_limits<double>::infinity(); }
   /// dt/dtau of the worldline with 4-velocity u.

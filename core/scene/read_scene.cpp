@@ -140,7 +140,7 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric) {
     out.edges = to_array<2>(shape.numbers("edges", 2, 1e-300, kLargest));
   } else {
     out.type = ShapeType::sky;
-    if (!metric.flat_at_infinity)
+    if (metric.skies == 0)
       shape.refuse("type", "the spacetime '" + std::string(metric.name) +
                                "' has no infinity to hold a sky; use a sphere with \"dome\": true");
   }

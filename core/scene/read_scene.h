@@ -20,7 +20,7 @@ struct MetricParameter {
 struct MetricDescription {
   std::string_view name;
   std::vector<MetricParameter> parameters;
-  bool flat_at_infinity = false;
+  int skies = 0;  ///< how many infinities hold a sky
 };
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0

@@ -3,7 +3,16 @@
 // Required of a metric M (a plain struct of double parameters; member functions are templates on the scalar):
 //   M::name, M::parameters          name, and a tuple of Parameter
 //   g(x) -> Matrix4                 covariant components, signature (+,-,-,-)
-// Optional, detected by the concepts below:
+// Optional, detected by concepts, and only makes things faster or richer:
+//   skies                           how many infinities hold a sky (default none)
+//   rhs(x, p) -> Phase              Hamilton's equations (else dual numbers and a solve, hamilton.h)
+//   ending(at, rate, precision)     where a ray ends: an Ending as S (else it goes on); precision: relative
+//   error
+//                                   that the direction to the sky may have
+//   sky_direction(at, rate, ending) where the ray comes from, for Ending::sky (else its chart direction)
+//   length_scale(x)                 against which errors of position are measured (else max(1, |x|))
+//   default_lookback()              in lambda (else infinite)
+//   conserved(x, k)                 named constants of motion of the geodesic with chart tangent k
 //   static_tetrad(x) -> Tetrad      orthonormal frame of the natural observer (else Gram-Schmidt)
 //   path(x, k) -> Path              closed-form geodesics: Path::at(lambda) -> PathPoint
 //   to_origin(P, x), from_origin(P, x), turn(P, x)   the isometry that carries P to the origin, and back
@@ -23,7 +32,23 @@ struct Parameter {
   std::string_view name;
   double M::*member;
   double least, most;  ///< range, inclusive
+  /// Where not empty, scenes give one of these words; the member holds its number.
+  std::array<std::string_view, 2> words{};
 };
+
+/// A point of phase space, or its derivative along lambda: coordinates x^mu and momenta p_mu.
+template <class S>
+struct Phase {
+  Vec4<S> x, p;
+};
+
+/// How a ray may end by itself; metrics hand these out as numbers of the scalar, so that packs can carry
+/// them.
+enum class Ending { none = 0, captured = 1, left_chart = 2, sky = 3, second_sky = 4 };
+template <class S>
+S as_scalar(Ending ending) {
+  return S(static_cast<double>(ending));
+}
 
 /// e[0] is the 4-velocity of the observer, e[1..3] the spatial axes; chart components.
 template <class S>
@@ -56,6 +81,16 @@ concept HasClosedPaths = requires(const M m, Vec4<double> x) {
 };
 
 template <class M>
+concept HasRhs = requires(const M m, Vec4<double> x) {
+  { m.rhs(x, x) } -> std::same_as<Phase<double>>;
+};
+
+template <class M>
+concept HasEnding = requires(const M m, Phase<double> point) {
+  { m.ending(point, point, 1e-9) } -> std::same_as<double>;
+};
+
+template <class M>
 concept HasIsometry = requires(const M m, Vec4<double> x) {
   { m.to_origin(x, x) } -> std::same_as<Vec4<double>>;
   { m.from_origin(x, x) } -> std::same_as<Vec4<double>>;
@@ -77,6 +112,31 @@ std::array<Matrix4<S>, 4> metric_derivatives(const M& metric, const Vec4<S>& x) 
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t i = 0; i < 4; ++i) out[k][i] = Vec4<S>::map([&](std::size_t j) { return g[i][j].d[k]; });
   return out;
+}
+
+/// The inverse of a 4 x 4 matrix by its 2 x 2 minors (Laplace): no pivots, so packs need no branches. Good to
+/// rounding times the condition of the matrix.
+template <class S>
+Matrix4<S> inverse(const Matrix4<S>& m) {
+  const auto minor = [&](std::size_t row, std::size_t i, std::size_t j) {
+    return m[row][i] * m[row + 1][j] - m[row][j] * m[row + 1][i];
+  };
+  const S s0 = minor(0, 0, 1), s1 = minor(0, 0, 2), s2 = minor(0, 0, 3), s3 = minor(0, 1, 2),
+          s4 = minor(0, 1, 3), s5 = minor(0, 2, 3);
+  const S c0 = minor(2, 0, 1), c1 = minor(2, 0, 2), c2 = minor(2, 0, 3), c3 = minor(2, 1, 2),
+          c4 = minor(2, 1, 3), c5 = minor(2, 2, 3);
+  const S scale = S(1.0) / (s0 * c5 - s1 * c4 + s2 * c3 + s3 * c2 - s4 * c1 + s5 * c0);
+  // Row j of the inverse, from the pairs of minors that leave out column j.
+  const auto row = [&](std::size_t i, std::size_t j, std::size_t k, const S& ca, const S& cb, const S& cc,
+                       const S& sa, const S& sb, const S& sc, double sign) {
+    const S q = S(sign) * scale;
+    return Vec4<S>{{q * (m[1][i] * ca - m[1][j] * cb + m[1][k] * cc),
+                    -(q * (m[0][i] * ca - m[0][j] * cb + m[0][k] * cc)),
+                    q * (m[3][i] * sa - m[3][j] * sb + m[3][k] * sc),
+                    -(q * (m[2][i] * sa - m[2][j] * sb + m[2][k] * sc))}};
+  };
+  return {row(1, 2, 3, c5, c4, c3, s5, s4, s3, 1), row(0, 2, 3, c5, c2, c1, s5, s2, s1, -1),
+          row(0, 1, 3, c4, c2, c0, s4, s2, s0, 1), row(0, 1, 2, c3, c1, c0, s3, s1, s0, -1)};
 }
 
 /// Solves m y = b for a symmetric or general 4 x 4 matrix (Gauss-Jordan with partial pivoting). One lane.
