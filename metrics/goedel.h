@@ -36,6 +36,25 @@ struct Goedel {
     return {{{{one, tx, ty, o}}, {{tx, xx, xy, o}}, {{ty, xy, yy, o}}, {{o, o, o, -one}}}};
   }
 
+  /// Hamilton's equations, from the inverse that completing the square gives: with pi = p - A p_t in the
+  /// plane, s = X.pi, c = X x pi, b = 1/4a^2 and N = 4a^2 + X^2, 2H = p_t^2 - pi^2 - b s^2 + c^2/N - p_z^2.
+  template <class S>
+  NULLCONE_INLINE Phase<S> rhs(const Vec4<S>& X, const Vec4<S>& p) const {
+    const S k(1 / (kSqrt2 * a)), b(1 / (4 * a * a));
+    const S &x = X[1], &y = X[2], over_N = S(1.0) / (S(4 * a * a) + x * x + y * y), k_E = k * p[0];
+    const S px = p[1] + k_E * y, py = p[2] - k_E * x;  // pi
+    const S bs = b * (x * px + y * py), c = (x * py - y * px) * over_N;
+    const S dx = -(px + bs * x + c * y), dy = c * x - (py + bs * y), c2 = c * c;
+    return {{{p[0] + k * (y * dx - x * dy), dx, dy, -p[3]}},
+            {{S(0.0), bs * px - c * py + c2 * x + k_E * dy, bs * py + c * px + c2 * y - k_E * dx, S(0.0)}}};
+  }
+
+  /// Errors count against the horizon's radius, or the distance where that is larger.
+  template <class S>
+  S length_scale(const Vec4<S>& x) const {
+    return max(S(2 * a), norm(spatial(x)));
+  }
+
   /// The dust and its axes: angles in (e1, e2) are Euclidean angles in the Poincaré disc.
   template <class S>
   Tetrad<S> static_tetrad(const Vec4<S>& x) const {

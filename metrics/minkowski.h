@@ -25,6 +25,20 @@ struct Minkowski {
   }
 
   template <class S>
+  NULLCONE_INLINE Phase<S> rhs(const Vec4<S>&, const Vec4<S>& p) const {
+    return {{{p[0], -p[1], -p[2], -p[3]}}, {}};
+  }
+
+  /// Directions never change, so a ray that moves outwards has its sky. Space has no scale of its own to say
+  /// from where on: a million units is far for a scene, and cheap to reach where no step is ever refused.
+  template <class S>
+  S ending(const Phase<S>& at, const Phase<S>& rate, double) const {
+    const Vec3<S> X = spatial(at.x);
+    const auto escaped = (dot(X, spatial(rate.x)) > S(0.0)) & (dot(X, X) > S(1e12));
+    return select(escaped, as_scalar<S>(Ending::sky), as_scalar<S>(Ending::none));
+  }
+
+  template <class S>
   Tetrad<S> static_tetrad(const Vec4<S>&) const {
     Tetrad<S> out;
     for (std::size_t i = 0; i < 4; ++i) out.e[i][i] = S(1.0);

@@ -1,20 +1,12 @@
 #include "metrics/registry.h"
 
 #include "core/base/error.h"
+#include "metric_list.h"
 
 namespace nullcone {
 
-// Adding a spacetime: its header, a line in each of these two lists, and one in CMakeLists.txt.
-#ifdef NULLCONE_ALL_ISAS
-#define NULLCONE_KERNELS(f)                                                                          \
-  f(minkowski, avx512) f(minkowski, avx2) f(minkowski, sse2) f(minkowski, onelane) f(goedel, avx512) \
-      f(goedel, avx2) f(goedel, sse2) f(goedel, onelane)
-#else
-#define NULLCONE_KERNELS(f) f(minkowski, sse2) f(goedel, sse2)
-#endif
-
 #define NULLCONE_DECLARE(metric, isa) const Spacetime& metric##_##isa();
-NULLCONE_KERNELS(NULLCONE_DECLARE)
+NULLCONE_KERNEL_LIST(NULLCONE_DECLARE)
 #undef NULLCONE_DECLARE
 
 namespace {
@@ -26,7 +18,7 @@ struct Entry {
 /// The widest instruction set of each spacetime first.
 constexpr Entry kEntries[] = {
 #define NULLCONE_ENTRY(metric, isa) {#metric, #isa, metric##_##isa},
-    NULLCONE_KERNELS(NULLCONE_ENTRY)
+    NULLCONE_KERNEL_LIST(NULLCONE_ENTRY)
 #undef NULLCONE_ENTRY
 };
 

@@ -2,7 +2,7 @@
 """Kernels of several instruction sets must not share symbols: the linker would keep one copy, and an SSE2 machine
 would run AVX-512 code. Reads `nm` of the release objects and fails on a weak symbol that two sets define.
 
-usage: symbols_test.py ISA=OBJECT... """
+usage: symbols_test.py ISA=OBJECT[,OBJECT...]... """
 import subprocess
 import sys
 
@@ -19,10 +19,11 @@ def main(paths):
         print("symbols_test: expected at least two objects")
         return 1
     owners, shared = {}, []
-    for isa, path in (argument.split("=", 1) for argument in paths):
-        for symbol in weak_symbols(path):
-            if owners.setdefault(symbol, isa) != isa:
-                shared.append((symbol, owners[symbol], path))
+    for isa, objects in (argument.split("=", 1) for argument in paths):
+        for path in objects.split(","):
+            for symbol in weak_symbols(path):
+                if owners.setdefault(symbol, isa) != isa:
+                    shared.append((symbol, owners[symbol], path))
     for symbol, first, second in shared[:20]:
         name = subprocess.run(["c++filt", symbol], capture_output=True, text=True, check=True).stdout.strip()
         print(f"shared: {name[:200]}\n    {first}\n    {second}")

@@ -164,6 +164,10 @@ void JsonObject::refuse(std::string_view key, std::string_view message) const {
 
 bool JsonObject::has(std::string_view key) const { return value_->contains(std::string(key)); }
 
+bool JsonObject::is_text(std::string_view key) const {
+  return has(key) && value_->at(std::string(key)).is_string();
+}
+
 const json& JsonObject::at(std::string_view key) {
   known_.emplace(key);
   const auto found = value_->find(std::string(key));

@@ -28,6 +28,7 @@ class JsonObject {
   JsonObject(const nlohmann::json& value, std::string place, std::string pointer);
 
   bool has(std::string_view key) const;
+  bool is_text(std::string_view key) const;
   /// The raw value of a required key.
   const nlohmann::json& at(std::string_view key);
   JsonObject object(std::string_view key);

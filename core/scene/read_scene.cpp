@@ -69,8 +69,15 @@ const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDe
   scene.metric = metric.word("name", names);
   const auto found =
       std::find_if(known.begin(), known.end(), [&](const auto& d) { return d.name == scene.metric; });
-  for (const MetricParameter& p : found->parameters)
-    scene.metric_parameters[std::string(p.name)] = metric.number_or(p.name, p.fallback, p.least, p.most);
+  for (const MetricParameter& p : found->parameters) {
+    double& value = scene.metric_parameters[std::string(p.name)];
+    if (p.words[0].empty()) {
+      value = metric.number_or(p.name, p.fallback, p.least, p.most);
+      continue;
+    }
+    const std::vector<std::string> words(p.words.begin(), p.words.end());
+    value = metric.word(p.name, words, words[static_cast<std::size_t>(p.fallback)]) == words[1] ? 1 : 0;
+  }
   metric.finish();
   return *found;
 }
@@ -79,6 +86,7 @@ Observer read_observer(JsonObject observer) {
   Observer out;
   out.event = read_event(observer, "event");
   out.velocity = read_velocity(observer, "velocity");
+  if (observer.word("frame", {"static", "normal"}, "static") == "normal") out.frame = ObserverFrame::normal;
   observer.finish();
   return out;
 }
@@ -140,6 +148,9 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric) {
     out.edges = to_array<2>(shape.numbers("edges", 2, 1e-300, kLargest));
   } else {
     out.type = ShapeType::sky;
+    out.sky = shape.has("side") ? static_cast<unsigned>(shape.integer("side", 1, 2)) : 1;
+    if (out.sky > static_cast<unsigned>(std::max(metric.skies, 1)))
+      shape.refuse("side", "the spacetime '" + std::string(metric.name) + "' has only one sky");
     if (metric.skies == 0)
       shape.refuse("type", "the spacetime '" + std::string(metric.name) +
                                "' has no infinity to hold a sky; use a sphere with \"dome\": true");
@@ -183,6 +194,34 @@ Object read_object(JsonObject object, const MetricDescription& metric, std::set<
   return out;
 }
 
+/// "draft", "balanced", "reference", or {"rtol", "atol", "integrator"}.
+Accuracy read_accuracy(JsonObject& root) {
+  if (root.is_text("accuracy")) {
+    const std::string name = root.word("accuracy", {"draft", "balanced", "reference"});
+    return name == "draft" ? kDraft : name == "balanced" ? kBalanced : kReference;
+  }
+  JsonObject object = root.object("accuracy");
+  Accuracy out = kBalanced;
+  out.rtol = object.number("rtol", 1e-15, 1e-2);
+  out.atol = object.number_or("atol", 0, 0, kLargest);
+  const std::vector<std::string> names(kIntegratorNames.begin(), kIntegratorNames.end());
+  const std::string name = object.word("integrator", names, names[static_cast<std::size_t>(out.integrator)]);
+  out.integrator = static_cast<Integrator>(std::find(names.begin(), names.end(), name) - names.begin());
+  object.finish();
+  return out;
+}
+
+/// How rays are followed.
+void read_paths(JsonObject& root, const MetricDescription& metric, Scene& scene) {
+  scene.integrated = root.word("paths", {"closed", "integrated"},
+                               metric.closed_paths ? "closed" : "integrated") == "integrated";
+  if (!scene.integrated && !metric.closed_paths)
+    root.refuse("paths", "the spacetime '" + std::string(metric.name) + "' has no closed-form paths");
+  if (!scene.integrated && scene.observer.frame != ObserverFrame::at_rest)
+    root.refuse("observer/frame", "expected \"static\" with closed-form paths");
+  if (root.has("accuracy")) scene.accuracy = read_accuracy(root);
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& text, const std::string& place,
@@ -194,13 +233,15 @@ Scene read_scene(const std::string& text, const std::string& place,
   scene.observer = read_observer(root.object("observer"));
   scene.camera = read_camera(root.object("camera"));
   if (root.has("max_lookback")) scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
+  read_paths(root, metric, scene);
   std::set<std::string> names;
-  bool sky = false;
+  std::array<bool, 3> sky{};
   for (JsonObject& object : root.objects("objects")) {
     if (scene.objects.size() == 1000) root.refuse("objects", "expected at most 1000 objects");
     scene.objects.push_back(read_object(object, metric, names));
     if (scene.objects.back().shape.type != ShapeType::sky) continue;
-    if (std::exchange(sky, true)) object.refuse("shape/type", "is a second sky; expected one at most");
+    if (std::exchange(sky[scene.objects.back().shape.sky], true))
+      object.refuse("shape/type", "is a second sky; expected one at most");
   }
   if (scene.objects.empty()) root.refuse("objects", "is empty; expected at least one object to look at");
   if (root.has("look")) root.object("look");  // its contents are post-rendering's affair

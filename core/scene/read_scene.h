@@ -14,6 +14,8 @@ namespace nullcone {
 struct MetricParameter {
   std::string_view name;
   double fallback, least, most;
+  std::array<std::string_view, 2>
+      words{};  ///< where not empty, one of these is given, and stands for its number
 };
 
 /// What the reader must know of a spacetime.
@@ -21,6 +23,7 @@ struct MetricDescription {
   std::string_view name;
   std::vector<MetricParameter> parameters;
   int skies = 0;  ///< how many infinities hold a sky
+  bool closed_paths = false;
 };
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0

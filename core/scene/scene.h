@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/camera.h"
@@ -13,10 +14,31 @@ namespace nullcone {
 using Event = std::array<double, 4>;   ///< (t, x, y, z)
 using Triple = std::array<double, 3>;  ///< spatial components
 
+/// In which frame an observer's directions and velocity are given.
+enum class ObserverFrame {
+  at_rest,  ///< the static tetrad
+  normal,  ///< of the observers at right angles to the surfaces of equal chart time: exist in black holes too
+};
+
 struct Observer {
   Event event = {0, 0, 0, 0};
-  Triple velocity = {0, 0, 0};  ///< local velocity in the static tetrad, in units of c
+  Triple velocity = {0, 0, 0};  ///< local velocity in the frame, in units of c
+  ObserverFrame frame = ObserverFrame::at_rest;
 };
+
+/// The Runge-Kutta pairs that integrate rays (core/trace/steppers.h).
+enum class Integrator { dopri5, verner65, prince_dormand87, fehlberg78 };
+inline constexpr std::array<std::string_view, 4> kIntegratorNames = {"dopri5", "verner65", "prince_dormand87",
+                                                                     "fehlberg78"};
+
+/// How carefully rays are integrated: a step's error stays below rtol of the spacetime's local length scale
+/// (and of the momentum), plus atol in scene units.
+struct Accuracy {
+  double rtol = 1e-8, atol = 0;
+  Integrator integrator = Integrator::prince_dormand87;
+};
+/// What scenes may name; set by the study in docs/accuracy.md.
+inline constexpr Accuracy kDraft{1e-5, 0, Integrator::verner65}, kBalanced{1e-8}, kReference{1e-12};
 
 enum class ShapeType { sphere, quad, sky };
 
@@ -27,6 +49,7 @@ struct Shape {
   double radius = 0;                     ///< sphere
   bool dome = false;                     ///< sphere: seen from inside
   std::array<double, 2> edges = {0, 0};  ///< quad: lengths along x and y
+  unsigned sky = 1;                      ///< sky: of which infinity, from 1
 };
 
 enum class PlacingType {
@@ -63,6 +86,8 @@ struct Scene {
   Observer observer;
   Camera camera;
   double max_lookback = 0;  ///< in lambda; infinity where rays may escape
+  bool integrated = false;  ///< rays are integrated, not taken from closed forms
+  Accuracy accuracy = kBalanced;
   std::vector<Object> objects;
   std::string canonical;  ///< canonical JSON of the whole scene
   std::string sha256;     ///< of the canonical JSON without its look

@@ -1,6 +1,7 @@
 // Hamilton's equations of a geodesic, from g alone: H = g^mn p_m p_n / 2 with p_m = g_mn k^n.
 #pragma once
 
+#include "core/scene/scene.h"
 #include "core/trace/metric.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -60,6 +61,14 @@ Vec3<S> sky_direction(const M& metric, const Phase<S>& at, const Phase<S>& rate,
     return metric.sky_direction(at, rate, end);
   else
     return spatial(rate.x);
+}
+
+/// The frame that an observer's directions and velocity are given in. The normal observers u_m ~ d_m t exist
+/// wherever the surfaces of equal t are spacelike, in black holes too.
+template <Metric M>
+Tetrad<double> observer_tetrad(const M& metric, const Vec4<double>& x, ObserverFrame frame) {
+  if (frame == ObserverFrame::at_rest) return static_tetrad(metric, x);
+  return gram_schmidt_tetrad(metric, x, inverse(metric.g(x))[0]);
 }
 
 template <class M>

@@ -1,14 +1,17 @@
-// The kernel of one spacetime: camera ray -> path -> crossings -> records, a band of pixels at a time.
+// The rays of a band of pixels, side by side in packs; and the search for crossings along closed-form paths.
 #pragma once
 
-#include <variant>
-
 #include "core/base/boost.h"
-#include "core/base/status.h"
-#include "core/trace/crossing.h"
-#include "core/trace/spacetime.h"
+#include "core/trace/records.h"
+#include "core/trace/with_type.h"
 
 NULLCONE_KERNEL_BEGIN
+
+#ifdef NULLCONE_ONE_LANE
+using Wide = double;  // the same numbers, one ray at a time: for comparison
+#else
+using Wide = Pack;
+#endif
 
 /// An object made ready: as the search sees it, and as the record sees it.
 template <class Placing, class Body, class Shape>
@@ -24,22 +27,6 @@ using AnyPlaced =
                  Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
                  Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
                  Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
-
-template <std::size_t kIndex, class Result, class Variant, class F>
-Result with_alternative(const Variant& object, F&& f) {
-  if constexpr (kIndex + 1 < std::variant_size_v<Variant>) {
-    if (object.index() != kIndex) return with_alternative<kIndex + 1, Result>(object, f);
-  }
-  return f(*std::get_if<kIndex>(&object));
-}
-
-/// Calls f with the object in its own type. (std::visit would bring code that instruction sets share.)
-template <class F, class... Types>
-decltype(auto) with_type(const std::variant<Types...>& object, F&& f) {
-  using First = std::variant_alternative_t<0, std::variant<Types...>>;
-  using Result = decltype(f(std::declval<const First&>()));
-  return with_alternative<0, Result>(object, f);
-}
 
 /// The rays of a band, and the nearest crossing found so far; structure of arrays, padded to whole packs.
 struct BandRays {
@@ -172,44 +159,6 @@ void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, co
     }
     listed = left;
   }
-}
-
-/// What a record says about crossings, in columns of a pack.
-template <class S>
-struct Recorded {
-  S order, Z, u, v, shift, t, tau, mu;
-};
-
-/// Everything about the crossings of some rays with one object.
-template <class S, Metric M, class Placing, class Body, class Shape>
-Recorded<S> record(const M& metric, const Placed<Placing, Body, Shape>& object,
-                   const Vec4<double>& observation, const Vec4<S>& past, const S& found) {
-  const auto path = object.placing.path(object.placing.launch(observation), past);
-  const Meeting<S> here = polish(path, object.body, object.shape, found);
-  const PathPoint<S> P = path.at(here.lambda);
-  const Matrix4<S> g = metric.g(P.event);
-
-  // The surface's 4-velocity: d/dtau at a fixed point of the object.
-  using D = Dual<S, 1>;
-  const Vec4<D> moving = object.body.event(D::variable(here.tau, 0), convert<D>(here.X));
-  const auto u = Vec4<S>::map([&](std::size_t i) { return moving[i].d[0]; });
-  const S frequency = -inner(g, P.tangent, u) / sqrt(inner(g, u, u));
-
-  // The emission angle: between the photon and the unit normal, on the side to which the photon leaves.
-  const Vec4<S> slope =
-      gradient(object.body, object.shape, P.event, static_tetrad(metric, P.event), here.tau);
-  const S steepness =
-      sqrt(slope[1] * slope[1] + slope[2] * slope[2] + slope[3] * slope[3] - slope[0] * slope[0]);
-  const S mu = abs(dot(slope, P.local)) / (frequency * steepness);
-  const auto uv = object.shape.uv(here.X);
-  return {metric.caustics(-(past[0] * here.lambda), past[3] / past[0]),
-          here.lambda,
-          uv[0],
-          uv[1],
-          S(1.0) / frequency,
-          object.placing.time(P.event) - S(observation[0]),
-          here.tau,
-          min(mu, S(1.0))};
 }
 
 NULLCONE_KERNEL_END

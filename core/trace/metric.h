@@ -173,15 +173,15 @@ Vec4<S> connection(const M& metric, const Vec4<S>& x, const Vec4<S>& u, const Ve
   return solve(metric.g(x), lower);
 }
 
-/// Orthonormal frame from the observer at rest in the chart and the coordinate axes d_x, d_y, d_z, in this
-/// order. Not defined where d_t is not timelike.
+/// Orthonormal frame from an observer along `first` (any length) and the coordinate axes d_x, d_y, d_z, in
+/// this order. NaN where `first` is not timelike.
 template <Metric M, class S>
-Tetrad<S> gram_schmidt_tetrad(const M& metric, const Vec4<S>& x) {
+Tetrad<S> gram_schmidt_tetrad(const M& metric, const Vec4<S>& x, const Vec4<S>& first) {
   const Matrix4<S> g = metric.g(x);
   Tetrad<S> out;
   for (std::size_t i = 0; i < 4; ++i) {
-    Vec4<S> e;
-    for (std::size_t k = 0; k < 4; ++k) e[k] = S(k == i ? 1.0 : 0.0);
+    Vec4<S> e = first;
+    for (std::size_t k = 0; k < 4 && i > 0; ++k) e[k] = S(k == i ? 1.0 : 0.0);
     for (std::size_t k = 0; k < i; ++k) {
       const S along = inner(g, e, out.e[k]);
       e = e - (k == 0 ? along : -along) * out.e[k];
@@ -192,12 +192,13 @@ Tetrad<S> gram_schmidt_tetrad(const M& metric, const Vec4<S>& x) {
   return out;
 }
 
+/// The static tetrad: of the observer at rest in the chart.
 template <Metric M, class S>
 Tetrad<S> static_tetrad(const M& metric, const Vec4<S>& x) {
   if constexpr (requires { metric.static_tetrad(x); })
     return metric.static_tetrad(x);
   else
-    return gram_schmidt_tetrad(metric, x);
+    return gram_schmidt_tetrad(metric, x, Vec4<S>{{S(1.0), S(0.0), S(0.0), S(0.0)}});
 }
 
 NULLCONE_KERNEL_END

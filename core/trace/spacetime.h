@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/status.h"
 #include "core/scene/read_scene.h"
 
 namespace nullcone {
@@ -42,9 +43,11 @@ class Tracer {
   virtual double tau_origin(std::size_t object) const = 0;
 };
 
-/// Why an object cannot be traced; `limit` is the bounding radius that would do, where that helps.
+/// Why an object, or the observer, cannot be traced; `limit` is the bounding radius that would do, where that
+/// helps.
 struct Unfit {
-  std::size_t object;
+  static constexpr std::size_t kObserver = SIZE_MAX;
+  std::size_t object;  ///< its number from 0, or kObserver
   const char* reason;
   double limit;
 };
@@ -52,6 +55,7 @@ struct Unfit {
 struct GeodesicPoint {
   double lambda;
   Event event, tangent;
+  Status status = Status::hit;  ///< how an integrated ray ended before it came so far; `hit`: it did not
 };
 struct NamedValue {
   std::string_view name;
@@ -70,11 +74,13 @@ class Spacetime {
   /// Axes e_0 … e_3 of the static tetrad at an event, in chart components.
   virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters,
                                              const Event& event) const = 0;
-  /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter.
+  /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter: by
+  /// its closed form, or integrated where there is none or `accuracy` is given.
   virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event,
-                                              const Event& k, std::span<const double> lambda) const = 0;
-  /// Evaluates the closed form at `count` affine parameters `step` apart, as wide as the kernel is, and sums
-  /// what it finds: the yardstick of benchmarks.
+                                              const Event& k, std::span<const double> lambda,
+                                              const Accuracy* accuracy = nullptr) const = 0;
+  /// Evaluates the closed form (or where there is none, the right-hand side) at `count` affine parameters
+  /// `step` apart, as wide as the kernel is, and sums what it finds: the yardstick of benchmarks.
   virtual double walk(std::span<const double> parameters, const Event& event, const Event& k, double step,
                       std::size_t count) const = 0;
   /// Constants of motion of the geodesic through the point.

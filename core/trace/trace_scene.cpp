@@ -178,6 +178,7 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   Unfit unfit{};
   auto tracer = spacetime.prepare(parameters, scene, unfit);
   if (tracer) return tracer;
+  if (unfit.object == Unfit::kObserver) throw InputError(place + ": /observer", unfit.reason);
   std::string message = "'" + scene.objects[unfit.object].name + "' " + unfit.reason;
   if (unfit.limit > 0) message += "; expected a radius below about " + std::to_string(unfit.limit);
   throw InputError(place + ": /objects/" + std::to_string(unfit.object), message);

@@ -1,0 +1,117 @@
+// Rays that are integrated: one attempt of a step, with a step size, an error and a verdict for each lane.
+#pragma once
+
+#include "core/scene/scene.h"
+#include "core/trace/hamilton.h"
+#include "core/trace/steppers.h"
+
+NULLCONE_KERNEL_BEGIN
+
+template <class S>
+Phase<S> to_phase(const State<S>& y) {
+  return {{{y[0], y[1], y[2], y[3]}}, {{y[4], y[5], y[6], y[7]}}};
+}
+template <class S>
+State<S> to_state(const Phase<S>& at) {
+  return {{at.x[0], at.x[1], at.x[2], at.x[3], at.p[0], at.p[1], at.p[2], at.p[3]}};
+}
+template <class S, std::size_t N>
+Vec<S, N> select(const Mask<S>& choose, const Vec<S, N>& a, const Vec<S, N>& b) {
+  return Vec<S, N>::map([&](std::size_t i) { return select(choose, a[i], b[i]); });
+}
+
+/// Hamilton's equations as Odeint calls them.
+template <Metric M>
+struct HamiltonSystem {
+  M metric;
+
+  template <class S>
+  NULLCONE_INLINE void operator()(const State<S>& y, State<S>& dy, const S&) const {
+    dy = to_state(rhs(metric, to_phase(y).x, to_phase(y).p));
+  }
+  template <class S>
+  State<S> rate(const State<S>& y) const {
+    State<S> dy;
+    (*this)(y, dy, S(0.0));
+    return dy;
+  }
+};
+
+/// Rays on their way.
+template <class S>
+struct Flight {
+  State<S> y, dy;
+  S lambda{}, h{};     ///< how far it has come, and how long the next step shall be
+  S steps{}, error{};  ///< attempts so far; sum of the estimated local errors of the steps taken, relative
+};
+
+template <class S>
+struct Attempt {
+  State<S> y1, dy1;
+  S h, error;  ///< length of the step, and its relative local error
+  S factor;    ///< by which the next step should be longer
+  Mask<S> accepted;
+};
+
+/// A first step that is surely not too long by much: the controller makes it longer soon. Positive.
+template <int kOrder, Metric M, class S>
+S first_step(const M& metric, const State<S>& y, const State<S>& dy, double rtol) {
+  const S speed = max(norm(spatial(to_phase(dy).x)), abs(dy[0]));
+  const double part = 0.5 * std::pow(std::max(rtol, 1e-14), 1.0 / kOrder);
+  return S(part) * length_scale(metric, to_phase(y).x) / max(speed, S(1e-300));
+}
+
+/// Tries a step of length h. Errors of position are measured against the metric's length scale, those of
+/// momentum against the largest component; a step is accepted if all are below rtol (positions: plus atol),
+/// and all finite.
+template <class Stepper, Metric M, class S>
+NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& system,
+                                   const Accuracy& accuracy, const Flight<S>& from, const S& h) {
+  Attempt<S> out;
+  State<S> error;
+  out.h = h;
+  stepper.step(system, from.y, from.dy, h, out.y1, out.dy1, error);
+  const auto largest = [](const State<S>& v, std::size_t first) {
+    return max(max(abs(v[first]), abs(v[first + 1])), max(abs(v[first + 2]), abs(v[first + 3])));
+  };
+  const S scale = length_scale(system.metric, to_phase(from.y).x);
+  const S allowed_x = S(accuracy.atol) + S(accuracy.rtol) * scale;
+  const S allowed_p = S(accuracy.rtol) * largest(from.y, 4);
+  const S e = max(max(largest(error, 0) / allowed_x, largest(error, 4) / allowed_p), S(1e-10));
+  // max drops NaN, so finiteness is asked for apart.
+  S sum = out.y1[0];
+  for (std::size_t i = 1; i < 8; ++i) sum = sum + out.y1[i];
+  const S nothing = (sum - sum) + (error[0] - error[0]) + (error[4] - error[4]);
+  const auto finite = nothing == S(0.0);
+  out.accepted = (e <= S(1.0)) & finite;
+  out.error = S(accuracy.rtol) * e;
+  S root = sqrt(e);
+  for (int i = 1; i < Stepper::kRoots; ++i) root = sqrt(root);
+  out.factor = select(finite, max(S(0.2), min(S(5.0), S(0.9) / root)), S(0.2));
+  return out;
+}
+
+/// Calls f with a stepper of the integrator's type.
+template <class S, class F>
+auto with_stepper(Integrator integrator, F&& f) {
+  switch (integrator) {
+    case Integrator::dopri5: {
+      DormandPrince5<S> stepper;
+      return f(stepper);
+    }
+    case Integrator::verner65: {
+      Verner65<S> stepper;
+      return f(stepper);
+    }
+    case Integrator::fehlberg78: {
+      Fehlberg78<S> stepper;
+      return f(stepper);
+    }
+    case Integrator::prince_dormand87:
+      break;
+  }
+  PrinceDormand87<S> stepper;
+  return f(stepper);
+}
+
+NULLCONE_KERNEL_END

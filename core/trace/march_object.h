@@ -1,0 +1,148 @@
+// Objects among integrated rays: where a ray is in their frame, and where a step first meets them.
+#pragma once
+
+#include "core/trace/curve.h"
+#include "core/trace/objects.h"
+#include "core/trace/with_type.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// Where an event on a ray is in the object's frame, and how fast it moves there.
+template <class S>
+struct Located {
+  Vec3<S> X, slope;
+};
+
+/// Of objects that are fixed in the chart: linear in the coordinates, X = to_object (x - centre).
+struct FixedMap {
+  Vec3<double> centre;
+  Matrix3<double> to_object;
+
+  template <class S>
+  Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
+    const auto rows = convert<S>(to_object);
+    return {rows * (spatial(event) - convert<S>(centre)), rows * spatial(tangent)};
+  }
+};
+
+/// Of objects that an isometry carries: Newton's method for the proper time, and implicit differentiation.
+template <Metric M>
+struct LocalMap {
+  LocalBody<M> body;
+
+  template <class S>
+  Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
+    using D = Dual<S, 2>;  // derivatives along lambda and tau
+    const S tau = local_time(body, event, body.first_guess(event));
+    const auto x = Vec4<D>::map([&](std::size_t i) { return D(event[i], Vec<S, 2>{{tangent[i], S(0.0)}}); });
+    const auto [late, X] = body.local(x, D::variable(tau, 1));
+    const S tau_slope = -(late.d[0] / late.d[1]);
+    Located<S> out;
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.X[i] = X[i].v;
+      out.slope[i] = X[i].d[0] + X[i].d[1] * tau_slope;
+    }
+    return out;
+  }
+};
+
+/// For the record: a rigid object at rest in a spacetime without isometries, to first order in X: the point Y
+/// of the static tetrad e_a at P, at proper time tau, is the event P + tau e_0 + Y^i e_i (PHYSICS notes,
+/// section on local objects).
+struct TangentBody {
+  Vec4<double> place;
+  Tetrad<double> tetrad;       ///< at `place`; e_0 along t
+  Matrix3<double> from_chart;  ///< inverse of the spatial parts of e_1 … e_3
+  Matrix3<double> axes;
+
+  template <class S>
+  std::pair<S, Vec3<S>> local(const Vec4<S>& event, const S& tau) const {
+    const Vec4<S> x = event - convert<S>(place);
+    const Vec3<S> Y = convert<S>(from_chart) * spatial(x);
+    S t = x[0];
+    for (std::size_t i = 0; i < 3; ++i) t = t - S(tetrad.e[i + 1][0]) * Y[i];
+    return {S(1 / tetrad.e[0][0]) * t - tau, convert<S>(axes) * Y};
+  }
+  template <class S>
+  Vec4<S> event(const S& tau, const Vec3<S>& X) const {
+    const Vec3<S> Y = X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
+    return convert<S>(place) + (tau * convert<S>(tetrad.e[0]) + Y[0] * convert<S>(tetrad.e[1]) +
+                                Y[1] * convert<S>(tetrad.e[2]) + Y[2] * convert<S>(tetrad.e[3]));
+  }
+  template <class S>
+  S first_guess(const Vec4<S>& event) const {
+    return S(1 / tetrad.e[0][0]) * (event[0] - S(place[0]));
+  }
+};
+
+inline Matrix3<double> product(const Matrix3<double>& a, const Matrix3<double>& b) {
+  Matrix3<double> out;
+  for (std::size_t i = 0; i < 3; ++i) out[i] = a[i][0] * b[0] + a[i][1] * b[1] + a[i][2] * b[2];
+  return out;
+}
+
+template <Metric M>
+TangentBody tangent_body(const M& metric, const Vec4<double>& place, const Matrix3<double>& axes) {
+  const Tetrad<double> tetrad = static_tetrad(metric, place);
+  Matrix3<double> columns;  // of the spatial parts of e_1 … e_3, and of their inverse: rows of cofactors
+  for (std::size_t i = 0; i < 3; ++i) columns[i] = spatial(tetrad.e[i + 1]);
+  const double scale = 1 / dot(columns[0], cross(columns[1], columns[2]));
+  return {place,
+          tetrad,
+          {scale * cross(columns[1], columns[2]), scale * cross(columns[2], columns[0]),
+           scale * cross(columns[0], columns[1])},
+          axes};
+}
+
+/// An object made ready: as the search sees it, and as the record sees it.
+template <class Map, class Body, class Shape>
+struct Marched {
+  Map map;
+  Body body;
+  Shape shape;
+};
+template <Metric M, bool = HasIsometry<M>>
+struct AnyMarched {
+  using Type = std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Quad>,
+                            Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, Quad>>;
+};
+template <Metric M>
+struct AnyMarched<M, true> {
+  using Type =
+      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Quad>,
+                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, Quad>>;
+};
+
+template <Metric M>
+struct MarchObject {
+  std::uint32_t number = 0;  ///< from 1
+  double ball = 0;           ///< bounding radius in the object's frame
+  typename AnyMarched<M>::Type marched{};
+
+  /// Whether a step from `from` to `to` may meet the object at all.
+  template <class S>
+  Mask<S> may_come_near(const Phase<S>& from, const Phase<S>& rate, const Phase<S>& to,
+                        const Phase<S>& end_rate, const S& length) const {
+    return with_type(marched, [&](const auto& object) {
+      const Located<S> a = object.map.locate(from.x, rate.x), b = object.map.locate(to.x, end_rate.x);
+      return NULLCONE_ISA::may_come_near(a.X, a.slope, b.X, b.slope, length, ball);
+    });
+  }
+
+  /// The first crossing within 0 < delta < limit of a step, from evenly spaced states of it.
+  template <class S, std::size_t n>
+  Search<S> first_crossing(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
+                           const S& length, const S& limit) const {
+    return with_type(marched, [&](const auto& object) {
+      std::array<Vec3<S>, n> X, slope;
+      for (std::size_t k = 0; k < n; ++k) {
+        const Located<S> here = object.map.locate(at[k].x, rate[k].x);
+        X[k] = here.X, slope[k] = here.slope;
+      }
+      return NULLCONE_ISA::first_crossing(Curve<S, n>(X, slope, length), object.shape, limit,
+                                          S(1e-13) * length);
+    });
+  }
+};
+
+NULLCONE_KERNEL_END

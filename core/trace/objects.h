@@ -1,0 +1,61 @@
+// From a scene's objects to bodies and shapes; which of them can be traced at all.
+#pragma once
+
+#include "core/scene/scene.h"
+#include "core/trace/crossing.h"
+#include "core/trace/spacetime.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// Whether every point of the bounding sphere can move with the object: its 4-velocity must be timelike.
+template <Metric M, class Body>
+bool moves_timelike(const M& metric, const Body& body, double ball) {
+  using D = Dual<double, 1>;
+  for (int n = 0; n < 64; ++n) {
+    const Vec4<D> x = body.event(D::variable(0.0, 0), convert<D>(ball * golden_point(n, 64)));
+    const auto event = Vec4<double>::map([&](std::size_t i) { return x[i].v; });
+    const auto u = Vec4<double>::map([&](std::size_t i) { return x[i].d[0]; });
+    if (!(inner(metric.g(event), u, u) > 0)) return false;
+  }
+  return true;
+}
+
+/// Why an object cannot be traced for an observer at an event of the object's chart; nothing if it can.
+template <Metric M, class Body, class S>
+const char* fault_of(const M& metric, const Body& body, const S& shape, const Shape& described,
+                     const Vec4<double>& observer) {
+  if (!moves_timelike(metric, body, shape.bounding_radius()))
+    return "is too large: parts of it would have to move faster than light";
+  const double tau = local_time(body, observer, body.first_guess(observer));
+  if (!shape.hides(body.local(observer, tau).second)) return nullptr;
+  if (described.type == ShapeType::quad) return "holds the observer in its surface";
+  return described.dome ? "is a dome, but the observer stands outside it"
+                        : "holds the observer; a sphere that is seen from inside needs \"dome\": true";
+}
+
+template <class Object>
+Matrix3<double> axes_of(const Object& object) {
+  return {Vec3<double>{object.axes[0]}, Vec3<double>{object.axes[1]}, Vec3<double>{object.axes[2]}};
+}
+
+/// The rigid body on a geodesic worldline from `start` on.
+template <Metric M>
+LocalBody<M> local_body(const M& metric, const Vec4<double>& start, const Placing& placing, double ball) {
+  LocalFrame<M> frame{metric,
+                      start,
+                      four_velocity(Vec3<double>{placing.worldline.velocity}),
+                      placing.gyroscope_axes,
+                      {},
+                      axes_of(placing)};
+  if (frame.gyroscope) frame.prepare();
+  return {frame, make_orbit(frame, ball)};
+}
+
+/// Calls f with the shape in its own type.
+template <class F>
+decltype(auto) with_shape(const Shape& shape, F&& f) {
+  if (shape.type == ShapeType::quad) return f(Quad{0.5 * shape.edges[0], 0.5 * shape.edges[1]});
+  return f(Sphere{shape.radius, shape.dome});
+}
+
+NULLCONE_KERNEL_END
