@@ -126,7 +126,8 @@ void shade(benchmark::State& state, const Kernel* kernel, const std::string& tex
   const Dataset dataset = world(false);
   const Look look = look_of(texture, black_body, dataset.manifest);
   const Shading shading = Renderer(dataset).prepare(look);
-  LineShader shader(dataset, shading, *kernel);
+  const std::vector<std::uint8_t> one_each = lines_with_one_each(dataset);
+  LineShader shader(dataset, one_each, shading, *kernel);
   std::vector<Rgbx> display(kWidth), physical(kWidth);
   time_lines(state, [&](std::size_t row) { shader.shade(row, display.data(), physical.data()); });
 }

@@ -28,7 +28,13 @@ void set_size(Image& image, int width, int height, const ImageParts& parts) {
 
 void LineDeveloper::develop(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count,
                             Image& image) {
-  for (std::vector<float>& plane : planes_) plane.resize(std::max(plane.size(), count));
+  for (std::size_t done = 0; done < count; done += kSegment)
+    develop_segment(display + done, physical == nullptr ? nullptr : physical + done, first + done,
+                    std::min(kSegment, count - done), image);
+}
+
+void LineDeveloper::develop_segment(const Rgbx* display, const Rgbx* physical, std::size_t first,
+                                    std::size_t count, Image& image) {
   const Planes planes = {planes_[0].data(), planes_[1].data(), planes_[2].data()};
   const double gain = std::exp2(look_.ev);
   kernel_.expose(display, static_cast<float>(gain), physical, static_cast<float>(gain / image.white_cd_m2),

@@ -33,9 +33,12 @@ class LineDeveloper {
   void develop(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count, Image& image);
 
  private:
+  void develop_segment(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count,
+                       Image& image);
+
   const DevelopLook& look_;
   const Kernel& kernel_;
-  std::array<std::vector<float>, 3> planes_;
+  std::array<std::array<float, kSegment>, 3> planes_;
 };
 
 }  // namespace nullcone::postrender

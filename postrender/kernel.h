@@ -57,15 +57,19 @@ struct Planes {
   float *r, *g, *b;
 };
 
+/// Pixels that go through all steps together, so that what passes from step to step stays in the first cache.
+inline constexpr std::size_t kSegment = 256;
+
 /// Functions of one instruction set.
 struct Kernel {
   std::string_view isa;
-  /// Of the middle one of three scan lines: see kernel_footprint.h. `scratch` holds 3 (width + 1) floats.
-  void (*footprints)(const std::array<Layer, 3>& lines, std::size_t width, const Footprints& out,
-                     float* scratch);
-  /// Weights of the crossings of a rank, and what shines through to the next one. Pixels that are not seen
-  /// any more lose their appearance.
-  void (*weigh)(const float* opacity, std::size_t count, float* transmittance, float* weight,
+  /// Of at most kSegment pixels from column `first` on of the middle one of three scan lines: see
+  /// kernel_footprint.h.
+  void (*footprints)(const std::array<Layer, 3>& lines, std::size_t width, std::size_t first,
+                     std::size_t count, const Footprints& out);
+  /// Weights of the crossings of a rank, and what shines through to the next one: false if nothing does
+  /// anywhere. Pixels that are not seen any more lose their appearance.
+  bool (*weigh)(const float* opacity, std::size_t count, float* transmittance, float* weight,
                 std::uint32_t* appearance);
   // The texture's colours along a run.
   void (*image)(const ImageView& image, const Run& run, Rgbx* out);

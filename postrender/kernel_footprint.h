@@ -26,46 +26,49 @@ inline Step step_between(const postrender::Layer& a, std::size_t i, const postre
   return {counts ? du : 0.0f, counts ? dv : 0.0f, counts ? du * du + dv * dv : kNoNeighbour};
 }
 
-/// Steps i of `scratch` lead from column i - 1 to i; the first and the last lead nowhere.
-inline void steps_to_the_right(const postrender::Layer& line, std::size_t width,
-                               const postrender::Footprints& out, float* __restrict scratch) {
-  float* __restrict u = scratch;
-  float* __restrict v = scratch + width + 1;
-  float* __restrict square = scratch + 2 * (width + 1);
-  u[0] = u[width] = v[0] = v[width] = 0;
-  square[0] = square[width] = kNoNeighbour;
-  for (std::size_t i = 1; i < width; ++i) {
-    const Step step = step_between(line, i - 1, line, i);
+inline void steps_to_the_right(const postrender::Layer& line, std::size_t width, std::size_t first,
+                               std::size_t count, const postrender::Footprints& out) {
+  // Step i leads from column first + i - 1 to first + i; those over the ends of the line lead nowhere.
+  float u[postrender::kSegment + 1], v[postrender::kSegment + 1], square[postrender::kSegment + 1];
+  u[0] = u[count] = v[0] = v[count] = 0;
+  square[0] = square[count] = kNoNeighbour;
+  const std::size_t last = first + count < width ? count : count - 1;
+  for (std::size_t i = first == 0 ? 1 : 0; i <= last; ++i) {
+    const Step step = step_between(line, first + i - 1, line, first + i);
     u[i] = step.u;
     v[i] = step.v;
     square[i] = step.square;
   }
   float* __restrict u_right = out.u_right;
   float* __restrict v_right = out.v_right;
-  for (std::size_t i = 0; i < width; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const bool next = square[i + 1] < square[i];
     u_right[i] = next ? u[i + 1] : u[i];
     v_right[i] = next ? v[i + 1] : v[i];
   }
 }
 
-inline void steps_down(const std::array<postrender::Layer, 3>& lines, std::size_t width,
+inline void steps_down(const std::array<postrender::Layer, 3>& lines, std::size_t first, std::size_t count,
                        const postrender::Footprints& out) {
-  float* __restrict u_down = out.u_down;
-  float* __restrict v_down = out.v_down;
+  // First here, because the compiler cannot tell the results from so many columns and would not make a vector
+  // loop.
+  float u[postrender::kSegment], v[postrender::kSegment];
   const postrender::Layer above = lines[0], here = lines[1], below = lines[2];
-  for (std::size_t i = 0; i < width; ++i) {
-    const Step up = step_between(above, i, here, i), down = step_between(here, i, below, i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = first + i;
+    const Step up = step_between(above, at, here, at), down = step_between(here, at, below, at);
     const bool next = down.square < up.square;
-    u_down[i] = next ? down.u : up.u;
-    v_down[i] = next ? down.v : up.v;
+    u[i] = next ? down.u : up.u;
+    v[i] = next ? down.v : up.v;
   }
+  __builtin_memcpy(out.u_down, u, count * sizeof(float));
+  __builtin_memcpy(out.v_down, v, count * sizeof(float));
 }
 
-void footprints(const std::array<postrender::Layer, 3>& lines, std::size_t width,
-                const postrender::Footprints& out, float* scratch) {
-  steps_to_the_right(lines[1], width, out, scratch);
-  steps_down(lines, width, out);
+void footprints(const std::array<postrender::Layer, 3>& lines, std::size_t width, std::size_t first,
+                std::size_t count, const postrender::Footprints& out) {
+  steps_to_the_right(lines[1], width, first, count, out);
+  steps_down(lines, first, count, out);
 }
 
 NULLCONE_KERNEL_END

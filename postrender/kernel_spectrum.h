@@ -10,16 +10,20 @@ inline float fourth_power(float g) { return (g * g) * (g * g); }
 
 inline void add(postrender::Rgbx* sum, Float4 light) { store(load<Float4>(sum) + light, sum); }
 
-void weigh(const float* __restrict opacity, std::size_t count, float* __restrict transmittance,
+bool weigh(const float* __restrict opacity, std::size_t count, float* __restrict transmittance,
            float* __restrict weight, std::uint32_t* __restrict appearance) {
+  std::int32_t through = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const float above = opacity[i] < 0 ? 0.0f : opacity[i], A = above > 1 ? 1.0f : above;
     const float T = transmittance[i];
     const bool seen = (T > 0) & (appearance[i] != postrender::kUnseen);
     weight[i] = T * A;
-    transmittance[i] = seen ? T * (1 - A) : T;
+    const float behind = seen ? T * (1 - A) : T;
+    transmittance[i] = behind;
+    through |= behind != 0 ? 1 : 0;
     appearance[i] = seen ? appearance[i] : postrender::kUnseen;
   }
+  return through != 0;
 }
 
 void background_light(const float* transmittance, const postrender::Rgbx& color, std::size_t count,

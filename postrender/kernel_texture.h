@@ -3,6 +3,7 @@
 
 #include "postrender/kernel.h"
 #include "postrender/lanes.h"
+#include "postrender/two_colors.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -55,109 +56,98 @@ inline void find_levels(const postrender::ImageView& image, const postrender::Ru
   }
 }
 
-/// The four texels around each look-up in one level stand at x + y, for low or high x and low or high y.
-struct Neighbours {
-  std::int32_t low_x[kBlock], high_x[kBlock], low_y[kBlock], high_y[kBlock];
+/// Where the upper left of the four texels around each look-up stands in one level, and how far beyond its
+/// centre the look-up is.
+struct Corners {
+  std::int32_t place[kBlock];
   float s[kBlock], t[kBlock];
 };
 
 /// Look-ups [from, to) in the same level. u wraps, v is clamped.
-inline void find_neighbours(const postrender::LevelView& level, const LookUps& at, std::size_t from,
-                            std::size_t to, Neighbours& out) {
+inline void find_corners(const postrender::LevelView& level, const LookUps& at, std::size_t from,
+                         std::size_t to, Corners& out) {
+  constexpr std::int32_t kTile = postrender::kTile, kLast = kTile - 1, kTileRow = postrender::kTileRow;
+  constexpr int kTileBits = 3;
+  static_assert(kTile == 1 << kTileBits);
   const auto width = static_cast<float>(level.width), height = static_cast<float>(level.height);
-  const std::int32_t last_x = level.width - 1, last_y = level.height - 1;
-  const std::int32_t row_of_tiles = level.row_of_tiles, first = level.first;
-  const auto x_place = [](std::int32_t i) { return (i >> 2) * 16 + (i & 3); };
-  const auto y_place = [=](std::int32_t j) { return first + (j >> 2) * row_of_tiles + (j & 3) * 4; };
+  const std::int32_t last_x = level.width - 1, row_of_tiles = level.row_of_tiles, first = level.first;
   for (std::size_t i = from; i < to; ++i) {
     const float x = at.x[i] * width - 0.5f;
-    const std::int32_t low = static_cast<std::int32_t>(x + 1) - 1, high = low + 1;
+    const std::int32_t low = static_cast<std::int32_t>(x + 1) - 1, column = low < 0 ? last_x : low;
     out.s[i] = x - static_cast<float>(low);
-    out.low_x[i] = x_place(low < 0 ? last_x : low);
-    out.high_x[i] = x_place(high > last_x ? 0 : high);
-  }
-  for (std::size_t i = from; i < to; ++i) {
     const float unclamped = at.y[i] * height - 0.5f, above = unclamped < 0 ? 0.0f : unclamped;
     const float y = above > height - 1 ? height - 1 : above;
-    const auto low = static_cast<std::int32_t>(y);
-    out.t[i] = y - static_cast<float>(low);
-    out.low_y[i] = y_place(low);
-    out.high_y[i] = y_place(low < last_y ? low + 1 : last_y);
+    const auto row = static_cast<std::int32_t>(y);
+    out.t[i] = y - static_cast<float>(row);
+    out.place[i] = first + (column >> kTileBits) * postrender::kTileTexels + (column & kLast) +
+                   (row >> kTileBits) * row_of_tiles + (row & kLast) * kTileRow;
   }
 }
 
-/// Sign, exponent and mantissa of half floats where floats have them; times 2^112 this is their value.
-inline Float4 placed(Int4 half) {
-  return bits_as<Float4>((half << 13) & static_cast<std::int32_t>(0x8fffe000U));
-}
-inline Float8 placed(Int8 half) {
-  return bits_as<Float8>((half << 13) & static_cast<std::int32_t>(0x8fffe000U));
+/// Tiles follow one another in no order that the processor would guess. The coarser level, a quarter of the
+/// size, is mostly there already.
+inline void fetch_early(const postrender::Texel* texels, const Corners& corners, std::size_t from,
+                        std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    const postrender::Texel* top = texels + static_cast<std::uint32_t>(corners.place[i]);
+    __builtin_prefetch(top);
+    __builtin_prefetch(top + postrender::kTileRow + 1);
+  }
 }
 
-inline Short4 texel_at(const postrender::Texel* texels, std::int32_t x, std::int32_t y) {
-  return load<Short4>(texels + static_cast<std::uint32_t>(x + y));
+/// The left and the right column of texels, mixed along each.
+inline TwoColors columns(const postrender::Texel* texels, const Corners& corners, std::size_t i) {
+  const postrender::Texel* top = texels + static_cast<std::uint32_t>(corners.place[i]);
+  const TwoColors upper = widened(load<Short8>(top)),
+                  lower = widened(load<Short8>(top + postrender::kTileRow));
+  return upper + corners.t[i] * (lower - upper);
 }
 
 /// One level.
-inline Float4 widened(Short4 half) {
-  // Each half float becomes the upper half of a word, and then goes down again with its sign.
-  const Short4 none = {};
-  return placed(bits_as<Int4>(__builtin_shufflevector(none, half, 0, 4, 1, 5, 2, 6, 3, 7)) >> 16);
-}
-
-inline Float4 bilinear(const postrender::Texel* texels, float unit, const Neighbours& near, std::size_t i) {
-  const std::int32_t left = near.low_x[i], right = near.high_x[i], top = near.low_y[i],
-                     bottom = near.high_y[i];
-  const Float4 a = unit * widened(texel_at(texels, left, top)),
-               b = unit * widened(texel_at(texels, right, top)),
-               c = unit * widened(texel_at(texels, left, bottom)),
-               d = unit * widened(texel_at(texels, right, bottom));
-  return mix(mix(a, b, near.s[i]), mix(c, d, near.s[i]), near.t[i]);
+inline Float4 bilinear(const postrender::Texel* texels, const Corners& corners, std::size_t i) {
+  const TwoColors both = columns(texels, corners, i);
+  return mix(first_of(both), second_of(both), corners.s[i]);
 }
 
 /// Two levels: bilinear() in both, and the mean.
-inline Float4 trilinear(const postrender::Texel* texels, float unit, const Neighbours& fine,
-                        const Neighbours& coarse, std::size_t i, float coarseness) {
-#ifdef __AVX2__  // side by side in one register, with the same roundings
-  const auto both = [&](const std::int32_t(Neighbours::*x)[kBlock],
-                        const std::int32_t(Neighbours::*y)[kBlock]) {
-    const Short8 half =
-        __builtin_shufflevector(texel_at(texels, (fine.*x)[i], (fine.*y)[i]),
-                                texel_at(texels, (coarse.*x)[i], (coarse.*y)[i]), 0, 1, 2, 3, 4, 5, 6, 7);
-    return unit * placed(__builtin_convertvector(half, Int8));
-  };
-  const auto each = [](float f, float c) { return Float8{f, f, f, f, c, c, c, c}; };
-  const Float8 s = each(fine.s[i], coarse.s[i]), t = each(fine.t[i], coarse.t[i]);
-  const Float8 a = both(&Neighbours::low_x, &Neighbours::low_y),
-               b = both(&Neighbours::high_x, &Neighbours::low_y),
-               c = both(&Neighbours::low_x, &Neighbours::high_y),
-               d = both(&Neighbours::high_x, &Neighbours::high_y);
-  const Float8 top = a + s * (b - a), bottom = c + s * (d - c), color = top + t * (bottom - top);
-  return mix(__builtin_shufflevector(color, color, 0, 1, 2, 3),
-             __builtin_shufflevector(color, color, 4, 5, 6, 7), coarseness);
-#else
-  return mix(bilinear(texels, unit, fine, i), bilinear(texels, unit, coarse, i), coarseness);
-#endif
+inline Float4 trilinear(const postrender::Texel* texels, const Corners& fine, const Corners& coarse,
+                        std::size_t i, float coarseness) {
+  const TwoColors f = columns(texels, fine, i), c = columns(texels, coarse, i);
+  const TwoColors left = firsts_of(f, c), right = seconds_of(f, c),
+                  levels = left + each_times(fine.s[i], coarse.s[i], right - left);
+  return mix(first_of(levels), second_of(levels), coarseness);
+}
+
+/// Where the look-ups that lie between the same two levels as the first one end.
+inline std::size_t end_of_level(const LookUps& at, std::size_t first, std::size_t count) {
+  const auto level = static_cast<std::int32_t>(at.level[first]);
+  std::int32_t difference = 0;
+  for (std::size_t i = first; i < count; ++i) difference |= static_cast<std::int32_t>(at.level[i]) ^ level;
+  if (difference == 0) return count;
+  std::size_t last = first;
+  while (static_cast<std::int32_t>(at.level[last]) == level) ++last;
+  return last;
 }
 
 /// The look-ups of a block, level by level: neighbouring pixels nearly always share theirs.
 inline void image_block(const postrender::ImageView& image, const LookUps& at, std::size_t count,
                         postrender::Rgbx* out) {
-  const float unit = image.unit * 0x1p112f;
-  Neighbours fine, coarse;
+  Corners fine, coarse;
   for (std::size_t first = 0, last = 0; first < count; first = last) {
     const auto level = static_cast<std::int32_t>(at.level[first]);
-    bool between = false;
-    while (last < count && static_cast<std::int32_t>(at.level[last]) == level)
-      between |= at.level[last++] != static_cast<float>(level);
-    find_neighbours(image.levels[level], at, first, last, fine);
-    if (!between) {
-      for (std::size_t i = first; i < last; ++i) store(bilinear(image.texels, unit, fine, i), out + i);
+    last = end_of_level(at, first, count);
+    std::int32_t between = 0;
+    for (std::size_t i = first; i < last; ++i) between |= at.level[i] != static_cast<float>(level) ? 1 : 0;
+    find_corners(image.levels[level], at, first, last, fine);
+    fetch_early(image.texels, fine, first, last);
+    if (between == 0) {
+      for (std::size_t i = first; i < last; ++i) store(image.unit * bilinear(image.texels, fine, i), out + i);
       continue;
     }
-    find_neighbours(image.levels[level + 1], at, first, last, coarse);
+    find_corners(image.levels[level + 1], at, first, last, coarse);
     for (std::size_t i = first; i < last; ++i)
-      store(trilinear(image.texels, unit, fine, coarse, i, at.level[i] - static_cast<float>(level)), out + i);
+      store(image.unit * trilinear(image.texels, fine, coarse, i, at.level[i] - static_cast<float>(level)),
+            out + i);
   }
 }
 

@@ -1,4 +1,4 @@
-// Four lanes: the three components of a colour, or the four coordinates of a look-up between two levels.
+// Four lanes: the three components of a colour.
 // Elementwise + - * and comparisons only, so that every instruction set gives the same bits.
 #pragma once
 
@@ -10,10 +10,7 @@ NULLCONE_KERNEL_BEGIN
 
 using Float4 = float __attribute__((vector_size(16), may_alias));
 using Int4 = std::int32_t __attribute__((vector_size(16), may_alias));
-using Float8 = float __attribute__((vector_size(32), may_alias));
-using Int8 = std::int32_t __attribute__((vector_size(32), may_alias));
 using Short8 = std::int16_t __attribute__((vector_size(16), may_alias));
-using Short4 = std::int16_t __attribute__((vector_size(8), may_alias));
 
 template <class Lanes, class T>
 inline Lanes load(const T* from) {
@@ -51,6 +48,10 @@ inline float nearest_of(float x) {
 /// Positions beyond this are as good as lost in float, and would not fit an integer.
 constexpr float kFarthest = 1e6f;
 
-inline float finite_or_zero(float x) { return x > -kFarthest && x < kFarthest ? x : 0.0f; }
+/// As a mask: of a choice between x and 0 the compiler would make a branch, and no vector loop.
+inline float finite_or_zero(float x) {
+  const std::int32_t keep = -static_cast<std::int32_t>(__builtin_fabsf(x) < kFarthest);
+  return bits_as<float>(bits_as<std::int32_t>(x) & keep);
+}
 
 NULLCONE_KERNEL_END

@@ -57,6 +57,7 @@ struct SpectrumMaker {
 
 Renderer::Renderer(Dataset dataset, const Kernel& kernel) : dataset_(std::move(dataset)), kernel_(kernel) {
   check_records(dataset_);
+  one_each_ = lines_with_one_each(dataset_);
 }
 
 std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& look, Rgb fallback,
@@ -108,10 +109,11 @@ void Renderer::keep_radiance(const Shading& shading) {
   radiance_.display.resize(dataset_.pixels());
   radiance_.physical.resize(has_physical(shading) ? dataset_.pixels() : 0);
   for_each_row([&] {
-    return [this, width, shader = LineShader(dataset_, shading, kernel_)](std::size_t row) mutable {
-      shader.shade(row, radiance_.display.data() + row * width,
-                   radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width);
-    };
+    return
+        [this, width, shader = LineShader(dataset_, one_each_, shading, kernel_)](std::size_t row) mutable {
+          shader.shade(row, radiance_.display.data() + row * width,
+                       radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width);
+        };
   });
 }
 
@@ -130,14 +132,14 @@ void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
   const std::size_t physical_width = has_physical(shading) ? width : 0;
   for_each_row([&] {
-    return
-        [=, &image, shader = LineShader(dataset_, shading, kernel_), developer = LineDeveloper(look, kernel_),
-         line =
-             Radiance{std::vector<Rgbx>(width), std::vector<Rgbx>(physical_width)}](std::size_t row) mutable {
-          Rgbx* physical = line.physical.empty() ? nullptr : line.physical.data();
-          shader.shade(row, line.display.data(), physical);
-          developer.develop(line.display.data(), physical, row * width, width, image);
-        };
+    return [=, &image, shader = LineShader(dataset_, one_each_, shading, kernel_),
+            developer = LineDeveloper(look, kernel_),
+            line = Radiance{std::vector<Rgbx>(width), std::vector<Rgbx>(physical_width)}](
+               std::size_t row) mutable {
+      Rgbx* physical = line.physical.empty() ? nullptr : line.physical.data();
+      shader.shade(row, line.display.data(), physical);
+      developer.develop(line.display.data(), physical, row * width, width, image);
+    };
   });
 }
 

@@ -40,6 +40,7 @@ class Renderer {
   void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const;
 
   Dataset dataset_;
+  std::vector<std::uint8_t> one_each_;  ///< lines_with_one_each()
   const Kernel& kernel_;
   TextureCache textures_;
   std::optional<Shading> shaded_;  ///< of the last picture

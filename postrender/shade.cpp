@@ -1,7 +1,9 @@
 #include "postrender/shade.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <span>
 
 namespace nullcone::postrender {
 
@@ -48,6 +50,19 @@ struct SeenLight {
   }
 };
 
+/// Where the run of equal values that begins at `first` ends.
+std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t first) {
+  constexpr std::size_t kStride = 16;
+  const std::uint32_t value = values[first];
+  std::size_t last = first;
+  for (std::uint32_t difference = 0; last + kStride <= values.size(); last += kStride) {
+    for (std::size_t i = 0; i < kStride; ++i) difference |= values[last + i] ^ value;
+    if (difference != 0) break;
+  }
+  while (last < values.size() && values[last] == value) ++last;
+  return last;
+}
+
 bool needs_footprint(const Texture& texture) {
   if (const auto* image = std::get_if<ImageTexture>(&texture)) return image->mipmap;
   return std::holds_alternative<CheckerboardTexture>(texture);
@@ -61,37 +76,37 @@ bool has_physical(const Shading& shading) {
   });
 }
 
+std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset) {
+  const auto width = static_cast<std::size_t>(dataset.manifest.width);
+  std::vector<std::uint8_t> out;
+  for (std::size_t line = 0; line < static_cast<std::size_t>(dataset.manifest.height); ++line) {
+    const std::uint64_t* offset = dataset.hits.offset.data() + line * width;
+    std::uint64_t difference = 0;
+    for (std::size_t i = 0; i <= width; ++i) difference |= offset[i] - offset[0] - i;
+    out.push_back(difference == 0 ? 1 : 0);
+  }
+  return out;
+}
+
 Layer LineShader::Expanded::layer() const {
   return {id.data(), order.data(), u.data(), v.data(), shift.data(), opacity.data()};
 }
 
-LineShader::LineShader(const Dataset& dataset, const Shading& shading, const Kernel& kernel)
+LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one_each, const Shading& shading,
+                       const Kernel& kernel)
     : dataset_(dataset),
+      one_each_(one_each),
       shading_(shading),
       kernel_(kernel),
       width_(static_cast<std::size_t>(dataset.manifest.width)),
       height_(static_cast<std::size_t>(dataset.manifest.height)),
       appearance_(width_),
       transmittance_(width_),
-      weight_(width_),
-      steps_(3 * (width_ + 1)),
-      colors_(width_) {
+      weight_(width_) {
   const std::vector<std::uint32_t> numbers(width_);
   const std::vector<float> values(width_);
   nothing_ = {kNowhere, 0, numbers, numbers, values, values, values, values};
   expanded_.fill(nothing_);
-  counts_.fill({kNowhere, false});
-  footprints_.fill(values);
-}
-
-bool LineShader::one_each(std::size_t row) {
-  Counts& counts = counts_[row % 3];
-  if (counts.row == row) return counts.one_each;
-  const std::uint64_t* offset = dataset_.hits.offset.data() + row * width_;
-  std::uint64_t difference = 0;
-  for (std::size_t i = 0; i <= width_; ++i) difference |= offset[i] - offset[0] - i;
-  counts = {row, difference == 0};
-  return counts.one_each;
 }
 
 Layer LineShader::layer(std::ptrdiff_t row, std::size_t rank) {
@@ -100,7 +115,7 @@ Layer LineShader::layer(std::ptrdiff_t row, std::size_t rank) {
   const std::size_t line = static_cast<std::size_t>(row);
   const std::uint64_t* offset = hits.offset.data() + line * width_;
   // Step 1: as they lie in the dataset, if they lie side by side.
-  if (rank == 0 && one_each(line)) {
+  if (rank == 0 && one_each_[line] != 0) {
     const std::size_t i = offset[0];
     return {&hits.id[i], &hits.order[i], &hits.u[i], &hits.v[i], &hits.shift[i], &hits.A[i]};
   }
@@ -123,7 +138,7 @@ Layer LineShader::layer(std::ptrdiff_t row, std::size_t rank) {
 }
 
 bool LineShader::anything_seen(std::size_t row, std::size_t rank) {
-  if (one_each(row)) return rank == 0;
+  if (one_each_[row] != 0) return rank == 0;
   const std::uint64_t* offset = dataset_.hits.offset.data() + row * width_;
   bool any = false;
   for (std::size_t i = 0; i < width_; ++i)
@@ -131,12 +146,12 @@ bool LineShader::anything_seen(std::size_t row, std::size_t rank) {
   return any;
 }
 
-/// How the crossings of one rank look, object by object along the line.
-void LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer& here) {
+/// How the crossings of one rank look, object by object along the line. False if nothing shines through.
+bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer& here) {
   const std::uint64_t* offset = dataset_.hits.offset.data() + row * width_;
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
     const std::uint32_t id = here.id[first];
-    while (last < width_ && here.id[last] == id) ++last;
+    last = end_of_run({here.id, width_}, first);
     const ObjectShading* object = id == 0 ? nullptr : &shading_.objects[id - 1];
     const std::size_t usual = object == nullptr ? kUnseen : object->appearance;
     std::fill(appearance_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -145,51 +160,53 @@ void LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer
     for (std::size_t i = first; i < last; ++i)
       appearance_[i] = static_cast<std::uint32_t>(appearance_at(*object, dataset_.hits, offset[i] + rank));
   }
-  kernel_.weigh(here.opacity, width_, transmittance_.data(), weight_.data(), appearance_.data());
+  return kernel_.weigh(here.opacity, width_, transmittance_.data(), weight_.data(), appearance_.data());
 }
 
-void LineShader::estimate_footprints(std::size_t row, std::size_t rank) {
-  const auto at = static_cast<std::ptrdiff_t>(row);
-  kernel_.footprints(
-      {layer(at - 1, rank), layer(at, rank), layer(at + 1, rank)}, width_,
-      {footprints_[0].data(), footprints_[1].data(), footprints_[2].data(), footprints_[3].data()},
-      steps_.data());
-}
-
-void LineShader::shade_run(const Appearance& appearance, const Run& run, Rgbx* display, Rgbx* physical) {
+/// Pixels [first, first + count) of the middle one of three lines, at most kSegment.
+void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance,
+                               std::size_t first, std::size_t count, Rgbx* display, Rgbx* physical) {
+  const Layer& here = lines[1];
+  const Footprints steps = {footprints_[0].data(), footprints_[1].data(), footprints_[2].data(),
+                            footprints_[3].data()};
+  if (needs_footprint(appearance.texture)) kernel_.footprints(lines, width_, first, count, steps);
+  const Run run = {count, here.u + first, here.v + first, here.shift + first, weight_.data() + first, steps};
   std::visit(TextureColors{kernel_, run, colors_.data()}, appearance.texture);
-  std::visit(SeenLight{kernel_, run, colors_.data(), display, physical}, appearance.spectrum);
+  std::visit(SeenLight{kernel_, run, colors_.data(), display + first,
+                       physical == nullptr ? nullptr : physical + first},
+             appearance.spectrum);
+}
+
+/// The crossings of one rank. Lines above and below are looked at for footprints only.
+void LineShader::shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display,
+                            Rgbx* physical) {
+  std::array<Layer, 3> lines = {here, here, here};
+  bool around = false;
+  for (std::size_t first = 0, last = 0; first < width_; first = last) {
+    last = end_of_run(appearance_, first);
+    if (appearance_[first] == kUnseen) continue;
+    const Appearance& appearance = shading_.appearances[appearance_[first]];
+    if (!around && needs_footprint(appearance.texture)) {
+      const auto at = static_cast<std::ptrdiff_t>(row);
+      lines = {layer(at - 1, rank), here, layer(at + 1, rank)};
+      around = true;
+    }
+    for (std::size_t from = first; from < last; from += kSegment)
+      shade_segment(lines, appearance, from, std::min(kSegment, last - from), display, physical);
+  }
 }
 
 void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical) {
-  std::fill_n(display, width_, Rgbx{});
-  if (physical != nullptr) std::fill_n(physical, width_, Rgbx{});
+  for (Rgbx* sum : {display, physical})
+    if (sum != nullptr) std::memset(static_cast<void*>(sum), 0, width_ * sizeof(Rgbx));
   std::ranges::fill(transmittance_, 1.0f);
-  for (std::size_t rank = 0; anything_seen(row, rank); ++rank) {
+  bool shines_through = true;
+  for (std::size_t rank = 0; shines_through && anything_seen(row, rank); ++rank) {
     const Layer here = layer(static_cast<std::ptrdiff_t>(row), rank);
-    find_appearances(row, rank, here);
-    bool estimated = false;
-    for (std::size_t first = 0, last = 0; first < width_; first = last) {
-      while (last < width_ && appearance_[last] == appearance_[first]) ++last;
-      if (appearance_[first] == kUnseen) continue;
-      const Appearance& appearance = shading_.appearances[appearance_[first]];
-      if (!estimated && needs_footprint(appearance.texture)) {
-        estimate_footprints(row, rank);
-        estimated = true;
-      }
-      const auto from = [&](const float* column) { return column + first; };
-      const auto step = [&](std::size_t i) { return footprints_[i].data() + first; };
-      shade_run(appearance,
-                {last - first,
-                 from(here.u),
-                 from(here.v),
-                 from(here.shift),
-                 from(weight_.data()),
-                 {step(0), step(1), step(2), step(3)}},
-                display + first, physical == nullptr ? nullptr : physical + first);
-    }
+    shines_through = find_appearances(row, rank, here);
+    shade_rank(row, rank, here, display, physical);
   }
-  kernel_.background(transmittance_.data(), shading_.background, width_, display);
+  if (shines_through) kernel_.background(transmittance_.data(), shading_.background, width_, display);
 }
 
 }  // namespace nullcone::postrender

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -50,12 +51,17 @@ struct Shading {
 /// Whether any appearance radiates in cd/m^2.
 bool has_physical(const Shading& shading);
 
+/// For each scan line whether every pixel has exactly one crossing: then columns are read as they lie.
+std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset);
+
 /// Shades scan lines; holds the working memory of one thread. Crossings are composited front to back,
 /// L += transmittance * A * colour, until nothing shines through: one rank after the other, and in it one run
 /// of pixels of the same appearance after the other.
 class LineShader {
  public:
-  LineShader(const Dataset& dataset, const Shading& shading, const Kernel& kernel);
+  /// `one_each` as lines_with_one_each() finds it.
+  LineShader(const Dataset& dataset, std::span<const std::uint8_t> one_each, const Shading& shading,
+             const Kernel& kernel);
 
   /// Writes the line's pixels; `physical` may be null where nothing is.
   void shade(std::size_t row, Rgbx* display, Rgbx* physical);
@@ -68,29 +74,24 @@ class LineShader {
     std::vector<float> u, v, shift, opacity;
     Layer layer() const;
   };
-  /// Whether every pixel of a line has one crossing.
-  struct Counts {
-    std::size_t row;
-    bool one_each;
-  };
   Layer layer(std::ptrdiff_t row, std::size_t rank);
-  bool one_each(std::size_t row);
   bool anything_seen(std::size_t row, std::size_t rank);
-  void find_appearances(std::size_t row, std::size_t rank, const Layer& here);
-  void estimate_footprints(std::size_t row, std::size_t rank);
-  void shade_run(const Appearance& appearance, const Run& run, Rgbx* display, Rgbx* physical);
+  bool find_appearances(std::size_t row, std::size_t rank, const Layer& here);
+  void shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+                     std::size_t count, Rgbx* display, Rgbx* physical);
+  void shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display, Rgbx* physical);
 
   const Dataset& dataset_;
+  std::span<const std::uint8_t> one_each_;
   const Shading& shading_;
   const Kernel& kernel_;
   std::size_t width_, height_;
   std::array<Expanded, 3> expanded_;  ///< by row modulo 3
-  std::array<Counts, 3> counts_;      ///< likewise
   Expanded nothing_;                  ///< above the first and below the last line
   std::vector<std::uint32_t> appearance_;
-  std::vector<float> transmittance_, weight_, steps_;
-  std::array<std::vector<float>, 4> footprints_;
-  std::vector<Rgbx> colors_;
+  std::vector<float> transmittance_, weight_;
+  std::array<std::array<float, kSegment>, 4> footprints_;
+  std::array<Rgbx, kSegment> colors_;
 };
 
 }  // namespace nullcone::postrender

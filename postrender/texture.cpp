@@ -8,8 +8,6 @@ namespace nullcone::postrender {
 
 namespace {
 
-constexpr std::int32_t kTile = 4;
-
 /// Area averages of `count` items (a `stride` apart) to `fewer` items, along one axis.
 struct Shrink {
   int from, to;
@@ -66,34 +64,29 @@ int normalising_exponent(const TextureLevel& full) {
   return std::clamp(15 - exponent, -14, 60);
 }
 
-/// Texels in rows of tiles; what sticks out over the image is never read.
-std::int32_t texels_a_tile_row(const TextureLevel& level) {
-  return (level.width + kTile - 1) / kTile * kTile * kTile;
+std::int32_t texels_a_row_of_tiles(const TextureLevel& level) {
+  return (level.width + kTile - 1) / kTile * kTileTexels;
 }
 
+Texel half_floats(Rgb c) { return {half_float(c.r), half_float(c.g), half_float(c.b), 0}; }
+
+/// What sticks out over the image by more than a texel is never read.
 void append_tiles(const TextureLevel& level, int exponent, std::vector<Texel>& texels) {
-  const std::size_t first = texels.size();
-  const std::int32_t pitch = texels_a_tile_row(level);
-  texels.resize(first + static_cast<std::size_t>(pitch) *
-                            static_cast<std::size_t>((level.height + kTile - 1) / kTile));
   const float scale = std::ldexp(1.0f, exponent);
-  for (int j = 0; j < level.height; ++j) {
-    Texel* row =
-        texels.data() + first + static_cast<std::size_t>(j / kTile) * static_cast<std::size_t>(pitch);
-    for (int i = 0; i < level.width; ++i) {
-      const Rgb c = scale * level.texel(i, j);
-      row[i / kTile * kTile * kTile + j % kTile * kTile + i % kTile] = {half_float(c.r), half_float(c.g),
-                                                                        half_float(c.b), 0};
-    }
-  }
+  for (int top = 0; top < level.height; top += kTile)
+    for (int left = 0; left < level.width; left += kTile)
+      for (int j = top; j < top + kTileRow; ++j)
+        for (int i = left; i < left + kTileRow; ++i)
+          texels.push_back(half_floats(scale * level.texel(i % level.width, std::min(j, level.height - 1))));
 }
 
 }  // namespace
 
 Rgb Pyramid::texel(std::size_t level, int i, int j) const {
   const LevelView& at = levels[level];
-  const Texel& found = texels[static_cast<std::size_t>(at.first + i / kTile * kTile * kTile + i % kTile +
-                                                       j / kTile * at.row_of_tiles + j % kTile * kTile)];
+  const std::int32_t place =
+      at.first + i / kTile * kTileTexels + i % kTile + j / kTile * at.row_of_tiles + j % kTile * kTileRow;
+  const Texel& found = texels[static_cast<std::size_t>(place)];
   const auto decoded = [&](std::int16_t half) {
     const auto bits = (static_cast<std::uint32_t>(static_cast<std::int32_t>(half)) << 13) & 0x8fffe000U;
     return unit * (std::bit_cast<float>(bits) * 0x1p112f);
@@ -114,8 +107,8 @@ Pyramid make_pyramid(TextureLevel full) {
   out.unit = std::ldexp(1.0f, -exponent);
   const std::vector<TextureLevel> levels = halvings(std::move(full));
   for (const TextureLevel& level : levels) {
-    out.levels.push_back(
-        {level.width, level.height, texels_a_tile_row(level), static_cast<std::int32_t>(out.texels.size())});
+    out.levels.push_back({level.width, level.height, texels_a_row_of_tiles(level),
+                          static_cast<std::int32_t>(out.texels.size())});
     append_tiles(level, exponent, out.texels);
   }
   return out;

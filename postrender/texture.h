@@ -30,8 +30,13 @@ std::vector<TextureLevel> halvings(TextureLevel full);
 /// Red, green, blue and an idle component, as half floats without infinities and subnormal numbers.
 using Texel = std::array<std::int16_t, 4>;
 
-/// Where a level lies: texel (i, j) stands at first + (i/4 * 16 + i%4) + (j/4 * row_of_tiles + j%4 * 4), in
-/// tiles of 4 x 4 texels (two cache lines), so that a picture may run through it in any direction.
+/// Levels stand in tiles of 8 x 8 texels, so that a picture may run through them in any direction. Each tile
+/// also holds the texels next to it on the right (wrapping) and below (clamped): the four around a look-up
+/// stand in one tile, at k, k + 1, k + kTileRow and k + kTileRow + 1.
+inline constexpr std::int32_t kTile = 8, kTileRow = kTile + 1, kTileTexels = kTileRow * kTileRow;
+
+/// Where a level lies: texel (i, j) at first + (i/8 * kTileTexels + i%8) + (j/8 * row_of_tiles + j%8 *
+/// kTileRow).
 struct LevelView {
   std::int32_t width, height, row_of_tiles, first;
 };

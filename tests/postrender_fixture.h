@@ -94,7 +94,7 @@ inline Rgb seen(const Spectrum& spectrum, Rgb color, float g) {
   Rgb first;
   for (const Kernel* kernel : kernels()) {
     Rgbx line_display, line_physical;
-    LineShader(data, shading, *kernel).shade(0, &line_display, &line_physical);
+    LineShader(data, lines_with_one_each(data), shading, *kernel).shade(0, &line_display, &line_physical);
     const Rgb found = physical ? line_physical : line_display;
     if (kernel == kernels().front()) first = found;
     EXPECT_EQ(found, first) << kernel->isa;

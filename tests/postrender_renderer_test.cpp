@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "postrender/color.h"
@@ -118,6 +119,67 @@ TEST(Renderer, what_it_keeps_never_shows) {
                                           kBusyLook};
   for (const std::string& text : texts)
     EXPECT_EQ(renderer.render(look_of(text, manifest)).display, picture(busy(40, 40), text).display) << text;
+}
+
+/// What a look-up between four texels must give, from the definition of wrapping and clamping.
+Rgb looked_up(const Pyramid& image, float u, float v) {
+  const int width = image.levels[0].width, height = image.levels[0].height;
+  const float x = (u - std::floor(u)) * static_cast<float>(width) - 0.5f,
+              y = std::clamp((1 - v) * static_cast<float>(height) - 0.5f, 0.0f,
+                             static_cast<float>(height - 1));
+  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(y);
+  const float s = x - static_cast<float>(left), t = y - static_cast<float>(top);
+  const auto row = [&](int j) {
+    const int at = std::min(j, height - 1);
+    return mix(image.texel(0, (left + width) % width, at), image.texel(0, (left + 1) % width, at), s);
+  };
+  return mix(row(top), row(top + 1), t);
+}
+
+TEST(LookUps, find_the_four_texels_around_them_across_tiles_and_seams) {
+  for (const auto& [width, height] : {std::pair{37, 19}, {16, 8}, {1, 1}, {3, 40}}) {
+    TextureLevel full{width, height, {}};
+    for (int i = 0; i < width * height; ++i) full.texels.push_back({static_cast<float>(i * 37 % 101), 1, 0});
+    const Pyramid image = make_pyramid(std::move(full));
+    std::vector<float> u, v;
+    for (int i = 0; i <= 400; ++i) {
+      u.push_back(static_cast<float>(i) / 200 - 0.5f);
+      v.push_back(static_cast<float>(i * 173 % 401) / 400);
+    }
+    for (const Kernel* kernel : kernels()) {
+      std::vector<Rgbx> found(u.size());
+      kernel->image({image.levels.data(), 0, image.texels.data(), image.unit, {}, false},
+                    {u.size(), u.data(), v.data(), nullptr, nullptr, {}}, found.data());
+      // Positions round by 2^-24 of the image's side; from one texel to the next it is up to 100.
+      for (std::size_t i = 0; i < u.size(); ++i)
+        expect_color(found[i], looked_up(image, u[i], v[i]), 100 * 40 * 0x1p-23f);
+    }
+  }
+}
+
+TEST(Footprints, are_the_same_however_a_line_is_cut) {
+  constexpr std::size_t kWidth = 600;
+  const Dataset data = busy(kWidth, 3);
+  std::array<std::vector<float>, 3> u;
+  std::vector<float> v(kWidth);
+  std::vector<std::uint32_t> id(kWidth, 1);
+  std::array<Layer, 3> lines;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t i = 0; i < kWidth; ++i) u[row].push_back(data.hits.u[2 * (row * kWidth + i)]);
+    lines[row] = {id.data(), id.data(), u[row].data(), v.data(), v.data(), v.data()};
+  }
+  const auto cut = [&](const Kernel& kernel, std::size_t length) {
+    std::array<std::vector<float>, 4> out;
+    out.fill(std::vector<float>(kWidth));
+    for (std::size_t first = 0; first < kWidth; first += length)
+      kernel.footprints(lines, kWidth, first, std::min(length, kWidth - first),
+                        {&out[0][first], &out[1][first], &out[2][first], &out[3][first]});
+    return out;
+  };
+  const auto expected = cut(*kernels().front(), kSegment);
+  EXPECT_NEAR(expected[0][kSegment], 0.01f, 1e-6f);
+  for (const Kernel* kernel : kernels())
+    for (const std::size_t length : {1u, 7u, 100u, 256u}) EXPECT_EQ(cut(*kernel, length), expected) << length;
 }
 
 TEST(Renderer, records_that_do_not_fit_are_refused) {

@@ -189,9 +189,9 @@ TEST(Footprints, cross_the_seam_but_not_the_edge_between_images) {
   Layer outside = line;
   outside.id = nothing.data();
   for (const Kernel* kernel : kernels()) {
-    std::vector<float> u_right(4), v_right(4), u_down(4, 1.0f), v_down(4, 1.0f), scratch(15);
-    kernel->footprints({outside, line, outside}, 4,
-                       {u_right.data(), v_right.data(), u_down.data(), v_down.data()}, scratch.data());
+    std::vector<float> u_right(4), v_right(4), u_down(4, 1.0f), v_down(4, 1.0f);
+    kernel->footprints({outside, line, outside}, 4, 0, 4,
+                       {u_right.data(), v_right.data(), u_down.data(), v_down.data()});
     EXPECT_NEAR(std::abs(u_right[1]), 0.04f, 1e-6f);
     EXPECT_NEAR(std::abs(u_right[2]), 0.04f, 1e-6f);
     EXPECT_EQ(u_right[3], 0);  // no neighbour counts
