@@ -33,6 +33,17 @@ struct KerrSchild {
   /// with l_i -> -l_i and a -> -a.
   double side() const { return chart == 0 ? -1 : 1; }
 
+  /// r^2 from r^4 - d r^2 - a^2 z^2 = 0 and Sigma = 2 r^2 - d. For d < 0, which is r < a and behind the
+  /// horizon, d + Sigma would cancel; there, dual numbers lose a^2/r^2 roundings.
+  template <class S>
+  NULLCONE_INLINE static S radius_squared(const S& d, const S& sigma, const S& az2) {
+    const S sum = S(0.5) * (d + sigma);
+    if constexpr (requires { select(d < S(0.0), sum, sum); }) {
+      if (any(d < S(0.0))) return select(d < S(0.0), S(2.0) * az2 / (sigma - d), sum);
+    }
+    return sum;
+  }
+
   /// What all formulas begin with, and l_m = (1, l).
   template <class S>
   struct Congruence {
@@ -92,8 +103,7 @@ KerrSchild::Congruence<S> KerrSchild::congruence(const Vec4<S>& X) const {
   const double a1 = side() * a();
   const S d = x * x + y * y + z * z - S(a1 * a1);
   const S sigma = sqrt(d * d + S(4 * a1 * a1) * (z * z));
-  // For d < 0, which is r < a and behind the horizon, digits cancel here: a^2/r^2 roundings are lost.
-  const S r = sqrt(S(0.5) * (d + sigma)), r2_a2 = r * r + S(a1 * a1);
+  const S r2 = radius_squared(d, sigma, S(a1 * a1) * (z * z)), r = sqrt(r2), r2_a2 = r2 + S(a1 * a1);
   const S over = S(side()) / r2_a2;
   return {r, sigma, r2_a2, {{over * (r * x + S(a1) * y), over * (r * y - S(a1) * x), S(side()) * z / r}}};
 }
@@ -110,9 +120,7 @@ NULLCONE_INLINE Phase<S> KerrSchild::rhs(const Vec4<S>& X, const Vec4<S>& p) con
   const S &x = X[1], &y = X[2], &z = X[3];
   const S z2 = z * z, d = (x * x + y * y) + (z2 - S(a2));
   const S sigma = sqrt(d * d + S(4 * a2) * z2);
-  S r2 = S(0.5) * (d + sigma);
-  if (any(d < S(0.0)))
-    r2 = select(d < S(0.0), S(2 * a2) * z2 / (sigma - d), r2);  // never outside the horizon
+  const S r2 = radius_squared(d, sigma, S(a2) * z2);
   const S r = sqrt(r2), r2_a2 = r2 + S(a2);
   const S r_sigma = r * sigma, shared = S(1.0) / (r_sigma * r2_a2);
   const S over_r2_a2 = r_sigma * shared, over_sigma = r * r2_a2 * shared, over_r = sigma * r2_a2 * shared;
@@ -143,8 +151,9 @@ NULLCONE_INLINE Phase<S> KerrSchild::rhs(const Vec4<S>& X, const Vec4<S>& p) con
 // equation factorises: Delta K = N + side w and w^2 = N^2 - Delta C (C >= 0: Carter). So K stays finite at
 // the horizon for rays that arrive with side w N < 0: these cross, and in the outgoing chart past-directed
 // rays do, and end as captured within. The others keep side w -> N and creep along the horizon while K grows
-// as 1/Delta, without end: they end where they are within 1/1000 of it, approach it, and can no longer turn
-// (a turning point is where w = 0). Behind the inner horizon, and close to r = 0, nothing has a sky.
+// as 1/Delta, without end: they end where Delta < r_+^2/1000, if they approach it and can no longer turn. (A
+// turning point is where w = 0; on the way to one, w < 0.87 N so close to the horizon, even for a = M.)
+// Behind the inner horizon, and close to r = 0, nothing has a sky.
 //
 // Sky. sky_direction has integrated most of the bending that is still to come. With beta = b/r, b the impact
 // parameter, it leaves less than (M/r^2) [0.2 M beta^4 + (a^2/r)(beta + 2M/r)] (measured:
@@ -158,11 +167,10 @@ S KerrSchild::ending(const Phase<S>& at, const Phase<S>& rate, double precision)
   const S outwards = dot(X, V), zero(0.0);
   const S w = r * outwards + S(a() * a()) * X[2] * V[2] / r;
   const S K = at.p[0] - dot(l, spatial(at.p)), side_w = S(side()) * w;
-  const S N = (r2_a2 - S(2 * mass) * r) * K - side_w;
-  const auto creeping = [&](double radius) {
-    const S gap = r - S(radius);
-    return (abs(gap) < S(1e-3 * radius)) & (gap * w < zero) & (side_w * N > S(0.9) * N * N);
-  };
+  const S delta = r2_a2 - S(2 * mass) * r, N = delta * K - side_w;
+  const double near = 1e-3 * horizon() * horizon();
+  const auto creeping =
+      (abs(delta) < S(near)) & (delta * (r - S(mass)) * w < zero) & (side_w * N > S(0.9) * N * N);
   const S over_r = S(1.0) / r, beta = norm(cross(X, V)) * over_r / norm(V), beta2 = beta * beta;
   const S to_come = S(mass) * over_r * over_r *
                     (S(0.2 * mass) * beta2 * beta2 + S(a() * a()) * over_r * (beta + S(2 * mass) * over_r));
@@ -170,9 +178,11 @@ S KerrSchild::ending(const Phase<S>& at, const Phase<S>& rate, double precision)
   S out = as_scalar<S>(Ending::none);
   out = select((r > S(30 * mass)) & (outwards > zero) & (to_come < S(0.1 * precision)) & (light < zero),
                as_scalar<S>(Ending::sky), out);
-  out = select(creeping(horizon(1)), as_scalar<S>(Ending::captured), out);
-  out = select((r < S(1e-3 * mass)) | creeping(horizon(-1)), as_scalar<S>(Ending::left_chart), out);
-  return side() < 0 ? select(r < S(horizon(1)), as_scalar<S>(Ending::captured), out) : out;
+  const S horizon_or_inner =
+      select(r > S(mass), as_scalar<S>(Ending::captured), as_scalar<S>(Ending::left_chart));
+  out = select(creeping, horizon_or_inner, out);
+  out = select(r < S(1e-3 * mass), as_scalar<S>(Ending::left_chart), out);
+  return side() < 0 ? select(r < S(horizon()), as_scalar<S>(Ending::captured), out) : out;
 }
 
 // Light that escapes the way the congruence runs hardly meets it: K falls as (b/r)^2, and -p is the

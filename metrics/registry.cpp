@@ -1,7 +1,8 @@
 #include "metrics/registry.h"
 
+#include <metric_list.h>  // made by CMake
+
 #include "core/base/error.h"
-#include "metric_list.h"
 
 namespace nullcone {
 

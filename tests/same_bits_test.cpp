@@ -30,7 +30,26 @@ std::vector<std::string> scenes() {
       {"type": "static", "event": [0, 2, 1, 0.5]}}},
     {"name": "wall", "shape": {"type": "quad", "edges": [2, 2]}, "placing": {"type": "coordinate", "centre": [-3, 0, 0],
       "z_axis": [1, 0, 0]}}]})";
-  return {earth.dump(), moving, resting};
+  // Integrated: some lanes of a pack fall into the hole, some escape, some meet objects.
+  const std::string hole =
+      R"({"metric": {"name": "kerr_schild", "spin": 0.9}, "observer": {"event": [0, 9, 0, 2]},
+    "camera": {"type": "perspective", "azimuth_deg": 180, "elevation_deg": -12, "fov_deg": 80, "resolution": [83, 61]},
+    "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": 1}, "placing": {"type": "local", "worldline":
+      {"type": "static", "event": [0, -5, 2, 1]}}},
+    {"name": "plate", "shape": {"type": "quad", "edges": [9, 9]}, "placing": {"type": "coordinate", "centre": [0, 0, -3]}},
+    {"name": "heaven", "shape": {"type": "sky"}}]})";
+  const std::string wormhole = R"({"metric": {"name": "ellis_wormhole"}, "observer": {"event": [0, 5, 0, 0]},
+    "camera": {"type": "perspective", "azimuth_deg": 180, "fov_deg": 60, "resolution": [61, 47]}, "accuracy": "draft",
+    "objects": [{"name": "here", "shape": {"type": "sky"}}, {"name": "there", "shape": {"type": "sky", "side": 2}}]})";
+  json spheres = json::parse(resting);
+  spheres["metric"]["name"] = "goedel";
+  spheres["paths"] = "integrated";
+  spheres["accuracy"] = {{"rtol", 1e-7}, {"integrator", "dopri5"}};
+  spheres["camera"]["resolution"] = {90, 45};
+  spheres["max_lookback"] = 8;
+  spheres["objects"][0]["shape"]["radius"] = 5;
+  spheres["objects"][0]["placing"]["centre"] = {0.5, 0.2, 0.3};
+  return {earth.dump(), moving, resting, hole, wormhole, spheres.dump()};
 }
 
 /// All channels of hits and rays, in full precision, of a picture that is traced in bands of `lines` scan

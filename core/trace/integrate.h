@@ -37,12 +37,18 @@ struct HamiltonSystem {
   }
 };
 
+/// Limits of the controller, measured (docs/accuracy.md): a step is at most kGrowth times as long as the last
+/// one, and moves by at most a part of the length scale, lest it jump over what it cannot know; away from the
+/// origin, where fields get weaker, it may move farther.
+inline constexpr double kGrowth = 5, kShrink = 0.2, kSafety = 0.8, kReachInwards = 0.4, kReachOutwards = 1;
+
 /// Rays on their way.
 template <class S>
 struct Flight {
   State<S> y, dy;
-  S lambda{}, h{};     ///< how far it has come, and how long the next step shall be
-  S steps{}, error{};  ///< attempts so far; sum of the estimated local errors of the steps taken, relative
+  S lambda{}, h{};        ///< how far it has come, and how long the next step shall be
+  S steps{}, error{};     ///< attempts so far; sum of the estimated local errors of the steps taken, relative
+  S growth = S(kGrowth);  ///< how many times longer the next step may be: not at all after a refusal
 };
 
 template <class S>
@@ -87,8 +93,26 @@ NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& sy
   out.error = S(accuracy.rtol) * e;
   S root = sqrt(e);
   for (int i = 1; i < Stepper::kRoots; ++i) root = sqrt(root);
-  out.factor = select(finite, max(S(0.2), min(S(5.0), S(0.9) / root)), S(0.2));
+  out.factor = select(finite, max(S(kShrink), min(from.growth, S(kSafety) / root)), S(kShrink));
   return out;
+}
+
+/// How long the next step shall be, where `rest` is left to go.
+template <Metric M, class S>
+S next_step(const M& metric, const Flight<S>& flight, const S& rest) {
+  const Vec3<S> X = spatial(to_phase(flight.y).x), V = spatial(to_phase(flight.dy).x);
+  const S reach = select(dot(X, V) > S(0.0), S(kReachOutwards), S(kReachInwards));
+  const S cap = reach * length_scale(metric, to_phase(flight.y).x) / max(norm(V), S(1e-300));
+  return min(min(flight.h, cap), rest);
+}
+
+/// What every attempt changes in a flight: all but where it stands.
+template <class S>
+void learn(Flight<S>& flight, const Attempt<S>& a, const Mask<S>& active) {
+  flight.steps = select(active, flight.steps + S(1.0), flight.steps);
+  flight.h = select(active, a.h * a.factor, flight.h);
+  flight.growth = select(active, select(a.accepted, S(kGrowth), S(1.0)), flight.growth);
+  flight.error = select(active & a.accepted, flight.error + a.error, flight.error);
 }
 
 /// Calls f with a stepper of the integrator's type.

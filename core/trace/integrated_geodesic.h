@@ -18,23 +18,20 @@ struct Traveller {
   Flight<double> flight;
   Status status = Status::hit;  ///< changes where it cannot go on
 
-  /// Goes on to lambda = target, away from 0.
+  /// Goes on to lambda = target >= 0.
   void go_to(double target) {
-    while (status == Status::hit && flight.lambda != target) {
-      const double rest = target - flight.lambda;
-      const bool last = std::fabs(rest) <= std::fabs(flight.h);
-      const double h = last ? rest : std::copysign(flight.h, rest);
-      const auto a = attempt(stepper, system, accuracy, flight, h);
-      flight.steps += 1;
-      if (!last || !a.accepted) flight.h = std::fabs(h) * a.factor;
+    while (status == Status::hit && flight.lambda < target) {
+      const double wish = flight.h, rest = target - flight.lambda;
+      const auto a = attempt(stepper, system, accuracy, flight, next_step(system.metric, flight, rest));
+      learn(flight, a, true);
       if (a.accepted) {
         flight.y = a.y1, flight.dy = a.dy1;
-        flight.lambda = last ? target : flight.lambda + h;
-        flight.error += a.error;
+        flight.lambda = a.h == rest ? target : flight.lambda + a.h;
+        if (a.h == rest) flight.h = wish;  // cut short by the target, not by its error
         const double end = ending(system.metric, to_phase(flight.y), to_phase(flight.dy), accuracy.rtol);
         // Rays may be followed as far as one likes towards infinity, but not into a horizon.
         if (end != 0 && end < as_scalar<double>(Ending::sky)) status = status_of(end);
-      } else if (flight.steps >= kStepLimit || !(std::fabs(h) > 1e-15 * std::fabs(flight.lambda))) {
+      } else if (flight.steps >= kStepLimit || !(a.h > 1e-15 * flight.lambda)) {
         status = Status::step_limit;
       }
     }
@@ -55,16 +52,19 @@ std::vector<GeodesicPoint> integrated_geodesic(const M& metric, const Vec4<doubl
   with_stepper<double>(accuracy.integrator, [&](auto& stepper) {
     using Stepper = std::remove_reference_t<decltype(stepper)>;
     const HamiltonSystem<M> system{metric};
-    Flight<double> start;
-    start.y = to_state(Phase<double>{event, metric.g(event) * k});
-    start.dy = system.rate(start.y);
-    start.h = first_step<Stepper::kOrder>(metric, start.y, start.dy, accuracy.rtol);
-    Traveller<Stepper, M> past{stepper, system, accuracy, start}, future = past;
-    for (const std::size_t i : order) {
-      auto& traveller = lambda[i] < 0 ? past : future;
-      traveller.go_to(lambda[i]);
-      out[i] = {traveller.flight.lambda, to_phase(traveller.flight.y).x.c, to_phase(traveller.flight.dy).x.c,
-                traveller.status};
+    for (const double way : {1.0, -1.0}) {  // into the past, lambda grows along the reversed tangent
+      Flight<double> start;
+      start.y = to_state(Phase<double>{event, metric.g(event) * (way * k)});
+      start.dy = system.rate(start.y);
+      start.h = first_step<Stepper::kOrder>(metric, start.y, start.dy, accuracy.rtol);
+      Traveller<Stepper, M> traveller{stepper, system, accuracy, start};
+      for (const std::size_t i : order) {
+        if (std::signbit(lambda[i]) != (way < 0)) continue;
+        traveller.go_to(std::fabs(lambda[i]));
+        const Flight<double>& flight = traveller.flight;
+        out[i] = {way * flight.lambda, to_phase(flight.y).x.c, (way * to_phase(flight.dy).x).c,
+                  traveller.status};
+      }
     }
   });
   return out;

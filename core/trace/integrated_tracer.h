@@ -149,6 +149,7 @@ class IntegratedTracer final : public Tracer {
       Phase<Wide> start{convert<Wide>(observation_), {}};
       for (std::size_t a = 0; a < 4; ++a) start.p = start.p + k[a] * lowered[a];
       const State<Wide> y = to_state(start);
+      group.store(Wide(kGrowth), flights.growth);
       store(group, y, flights.y);
       group.store(first_step<Stepper::kOrder>(metric, y, setting_.system.rate(y), setting_.accuracy.rtol),
                   flights.h);

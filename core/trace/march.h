@@ -19,14 +19,14 @@ struct Flights {
   std::size_t count;
   std::unique_ptr<double[]> memory;
   std::array<double*, 8> y{}, y1{};  ///< y1: end of the step that waits to be looked at
-  double *lambda, *h, *steps, *error, *length, *delta;
+  double *lambda, *h, *growth, *steps, *error, *length, *delta;
   std::unique_ptr<std::uint32_t[]> object, list, waiting;
   std::unique_ptr<Status[]> status;
   std::size_t listed = 0, waits = 0;
 
   explicit Flights(std::size_t rays)
       : count(rays),
-        memory(new double[22 * rays]()),
+        memory(new double[23 * rays]()),
         object(new std::uint32_t[rays]()),
         list(new std::uint32_t[rays]),
         waiting(new std::uint32_t[rays]),
@@ -34,7 +34,8 @@ struct Flights {
     double* next = memory.get();
     const auto column = [&] { return std::exchange(next, next + rays); };
     for (std::size_t i = 0; i < 8; ++i) y[i] = column(), y1[i] = column();
-    lambda = column(), h = column(), steps = column(), error = column(), length = column(), delta = column();
+    lambda = column(), h = column(), growth = column(), steps = column(), error = column(), length = column(),
+    delta = column();
   }
 };
 
@@ -100,21 +101,20 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
   flight.h = group.load(flights.h);
   flight.steps = group.load(flights.steps);
   flight.error = group.load(flights.error);
+  flight.growth = group.load(flights.growth);
   S end(0.0), length(0.0);
   State<S> y1 = flight.y;
   auto active = flight.lambda == flight.lambda, waits = active & !active, given_up = waits;
   const S limit(setting.lookback);
   for (int i = 0; i < rounds && any(active); ++i) {
-    const Attempt<S> a =
-        attempt(stepper, system, setting.accuracy, flight, min(flight.h, limit - flight.lambda));
-    flight.steps = select(active, flight.steps + S(1.0), flight.steps);
-    flight.h = select(active, a.h * a.factor, flight.h);
+    const Attempt<S> a = attempt(stepper, system, setting.accuracy, flight,
+                                 next_step(system.metric, flight, limit - flight.lambda));
+    learn(flight, a, active);
     const auto taken = active & a.accepted;
     // A step may also become too short to get anywhere.
     const S progress = abs(a.h) * norm(spatial(to_phase(flight.dy).x));
     const auto stuck =
         active & !a.accepted & !(progress > S(1e-14) * length_scale(system.metric, to_phase(flight.y).x));
-    flight.error = select(taken, flight.error + a.error, flight.error);
     auto near = waits & !waits;
     if (any(taken))
       for (std::size_t k = 0; k < setting.count; ++k)
@@ -138,6 +138,7 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
   group.store(flight.h, flights.h);
   group.store(flight.steps, flights.steps);
   group.store(flight.error, flights.error);
+  group.store(flight.growth, flights.growth);
   group.store(length, flights.length);
   std::array<bool, Group<S>::kWidth> goes_on{}, waiting{}, doubtful{};
   Lanes<S>::store(active, goes_on.data());
