@@ -162,6 +162,10 @@ NULLCONE_INLINE Phase<S> KerrSchild::rhs(const Vec4<S>& X, const Vec4<S>& p) con
 // of its speed.
 template <class S>
 S KerrSchild::ending(const Phase<S>& at, const Phase<S>& rate, double precision) const {
+  // Rays that are neither within (1.1 r_+^2 + a^2)^(1/2) of the origin nor beyond 30 M go on.
+  const S R2 = dot(spatial(at.x), spatial(at.x));
+  const double inner = 1.1 * horizon() * horizon() + a() * a(), outer = 900 * mass * mass;
+  if (!any((R2 > S(outer)) | (R2 < S(inner)))) return as_scalar<S>(Ending::none);
   const auto [r, sigma, r2_a2, l] = congruence(at.x);
   const Vec3<S> X = spatial(at.x), V = spatial(rate.x);
   const S outwards = dot(X, V), zero(0.0);

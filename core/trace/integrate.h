@@ -81,8 +81,9 @@ NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& sy
     return max(max(abs(v[first]), abs(v[first + 1])), max(abs(v[first + 2]), abs(v[first + 3])));
   };
   const S scale = length_scale(system.metric, to_phase(from.y).x);
-  const S allowed_x = S(accuracy.atol) + S(accuracy.rtol) * scale;
-  const S allowed_p = S(accuracy.rtol) * largest(from.y, 4);
+  const double rtol = Stepper::kEstimate * accuracy.rtol;
+  const S allowed_x = S(Stepper::kEstimate * accuracy.atol) + S(rtol) * scale;
+  const S allowed_p = S(rtol) * largest(from.y, 4);
   const S e = max(max(largest(error, 0) / allowed_x, largest(error, 4) / allowed_p), S(1e-10));
   // max drops NaN, so finiteness is asked for apart.
   S sum = out.y1[0];

@@ -31,9 +31,9 @@ struct Traveller {
         const double end = ending(system.metric, to_phase(flight.y), to_phase(flight.dy), accuracy.rtol);
         // Rays may be followed as far as one likes towards infinity, but not into a horizon.
         if (end != 0 && end < as_scalar<double>(Ending::sky)) status = status_of(end);
-      } else if (flight.steps >= kStepLimit || !(a.h > 1e-15 * flight.lambda)) {
-        status = Status::step_limit;
       }
+      const bool stuck = flight.steps >= kStepLimit || !(a.accepted || a.h > 1e-15 * flight.lambda);
+      if (stuck && status == Status::hit) status = Status::step_limit;
     }
   }
 };

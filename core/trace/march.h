@@ -215,7 +215,7 @@ void look_closely(Stepper& stepper, const MarchSetting<M>& setting, const Group<
 /// Follows all rays to their ends.
 template <class S, class Stepper, Metric M>
 void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights) {
-  constexpr int kRound = 6;
+  constexpr int kRound = 12;
   for (std::size_t i = 0; i < flights.count; ++i) flights.list[i] = static_cast<std::uint32_t>(i);
   flights.listed = flights.count;
   while (flights.listed > 0) {

@@ -58,12 +58,14 @@ struct GenericPair {
   }
 };
 
-/// One step of a pair of order `kOrder`; `kRoots` is how many square roots of the error estimate make the
-/// factor of the next step: about 1/(embedded order + 1), by roots alone, so that the bits are the same
-/// everywhere.
+// Each stepper takes one step of a pair of order kOrder. kRoots is how many square roots of the error
+// estimate make the factor of the next step: about 1/(embedded order + 1), by roots alone, so that the bits
+// are the same everywhere. kEstimate is how many times the estimate exceeds the error that is left at a ray's
+// end, as measured (docs/accuracy.md): so one tolerance means about one error, whatever the stepper.
 template <class S>
 struct DormandPrince5 {
-  static constexpr int kOrder = 5, kRoots = 2, kRates = 6;
+  static constexpr int kOrder = 5, kRoots = 2;
+  static constexpr double kEstimate = 1;
   boost::numeric::odeint::runge_kutta_dopri5<State<S>, S, State<S>, S, boost::numeric::odeint::array_algebra,
                                              boost::numeric::odeint::default_operations,
                                              boost::numeric::odeint::never_resizer>
@@ -84,9 +86,9 @@ struct DormandPrince5 {
   }
 };
 
-template <class S, class Stepper, int kOrder_, int kRoots_, int kRates_>
+template <class S, class Stepper, int kOrder_, int kRoots_>
 struct OdeintPair {
-  static constexpr int kOrder = kOrder_, kRoots = kRoots_, kRates = kRates_;
+  static constexpr int kOrder = kOrder_, kRoots = kRoots_;
   Stepper stepper;
 
   template <class System>
@@ -108,13 +110,17 @@ using Fehlberg78Stepper = boost::numeric::odeint::runge_kutta_fehlberg78<
     State<S>, S, State<S>, S, boost::numeric::odeint::array_algebra,
     boost::numeric::odeint::default_operations, boost::numeric::odeint::never_resizer>;
 template <class S>
-struct Fehlberg78 : OdeintPair<S, Fehlberg78Stepper<S>, 8, 3, 13> {};
+struct Fehlberg78 : OdeintPair<S, Fehlberg78Stepper<S>, 8, 3> {
+  static constexpr double kEstimate = 1;
+};
 template <class S>
-struct Verner65 : OdeintPair<S, typename GenericPair<S, kVerner65>::Stepper, 6, 3, 8> {
+struct Verner65 : OdeintPair<S, typename GenericPair<S, kVerner65>::Stepper, 6, 3> {
+  static constexpr double kEstimate = 0.4;
   Verner65() : Verner65::OdeintPair{GenericPair<S, kVerner65>::make()} {}
 };
 template <class S>
-struct PrinceDormand87 : OdeintPair<S, typename GenericPair<S, kPrinceDormand87>::Stepper, 8, 3, 13> {
+struct PrinceDormand87 : OdeintPair<S, typename GenericPair<S, kPrinceDormand87>::Stepper, 8, 3> {
+  static constexpr double kEstimate = 16;
   PrinceDormand87() : PrinceDormand87::OdeintPair{GenericPair<S, kPrinceDormand87>::make()} {}
 };
 
