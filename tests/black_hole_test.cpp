@@ -110,7 +110,7 @@ TEST(Schwarzschild, ShadowEndsWhereItMust) {
   for (const auto& [r, angle] : cases) {
     // Close to the horizon light needs little energy, E^2 = f of the camera's: roundings of k, 1e-16/f, count
     // as 1e-16/f^2 of it.
-    const double f = 1 - 2 / r, rim = (1e-7 + 2e-17 / (f * f)) * std::min(angle, kPi - angle);
+    const double f = 1 - 2 / r, rim = (1e-7 + 1e-15 / (f * f)) * std::min(angle, kPi - angle);
     for (const double psi : {angle - rim, angle + rim}) {
       const Vec4<double> event = {{0, r, 0, 0}};
       const Followed ray = follow(KerrSchild{}, event, past({}, event, towards_hole(psi)), kSharp);
