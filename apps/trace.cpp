@@ -68,6 +68,10 @@ class Talk {
                    100.0 * static_cast<double>(done) / static_cast<double>(all), 1e-6 * rate, left);
     };
   }
+  Note notes() const {
+    if (quiet_) return {};
+    return [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  }
   void summary(const Dataset& dataset, const std::string& path) const {
     if (quiet_) return;
     std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(),
@@ -113,7 +117,8 @@ int main(int argc, char** argv) {
     const Spacetime& spacetime = find_spacetime(scene.metric, isa);
     Talk talk(options.quiet);
     try {
-      const Dataset dataset = trace_scene(spacetime, scene, scene_path, options.threads, talk.progress());
+      const Dataset dataset =
+          trace_scene(spacetime, scene, scene_path, options.threads, talk.progress(), talk.notes());
       write_dataset(output, dataset, make_preview(dataset));
       talk.summary(dataset, output);
     } catch (const Interrupted&) {

@@ -34,7 +34,8 @@ class IntegratedTracer final : public Tracer {
         u_camera_(four_velocity(Vec3<double>{scene.observer.velocity})),
         tetrad_(observer_tetrad(metric, observation_, scene.observer.frame)),
         objects_(new MarchObject<M>[scene.objects.size()]),
-        origins_(new double[scene.objects.size()]()) {
+        origins_(new double[scene.objects.size()]()),
+        distortions_(new double[scene.objects.size()]()) {
     setting_ = {{metric}, scene.accuracy, std::min(scene.max_lookback, kFar), objects_.get(), 0, {}, 0, kFar};
     numbers_ = static_cast<std::uint32_t>(scene.objects.size());
   }
@@ -82,6 +83,7 @@ class IntegratedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return origins_[object]; }
+  double distortion(std::size_t object) const override { return distortions_[object]; }
 
  private:
   /// An object that rests in the chart or, where the spacetime has isometries, moves on a geodesic.
@@ -200,7 +202,7 @@ class IntegratedTracer final : public Tracer {
   Vec4<double> observation_, u_camera_;
   Tetrad<double> tetrad_;
   std::unique_ptr<MarchObject<M>[]> objects_;
-  std::unique_ptr<double[]> origins_;
+  std::unique_ptr<double[]> origins_, distortions_;
   MarchSetting<M> setting_;
   std::uint32_t numbers_ = 0;
 };

@@ -94,6 +94,20 @@ TangentBody tangent_body(const M& metric, const Vec4<double>& place, const Matri
           axes};
 }
 
+/// The largest relative error of lengths at the surface of a ball in the body's frame: how far the frame's
+/// vectors are from orthonormal there.
+template <Metric M>
+double distortion_of(const M& metric, const TangentBody& body, double ball) {
+  double worst = 0;
+  for (int n = 0; n < 64; ++n) {
+    const Matrix4<double> g = metric.g(body.event(0.0, ball * golden_point(n, 64)));
+    for (std::size_t i = 1; i < 4; ++i)
+      for (std::size_t j = 1; j <= i; ++j)
+        worst = std::max(worst, std::fabs(inner(g, body.tetrad.e[i], body.tetrad.e[j]) + (i == j ? 1 : 0)));
+  }
+  return 0.5 * worst;  // lengths are roots
+}
+
 /// An object made ready: as the search sees it, and as the record sees it.
 template <class Map, class Body, class Shape>
 struct Marched {

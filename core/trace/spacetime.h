@@ -41,6 +41,9 @@ class Tracer {
   virtual std::size_t trace_band(int first_line, int lines, const BandRoom& room) const = 0;
   /// Proper time that the channel `tau` of object number `object` (from 0) counts from.
   virtual double tau_origin(std::size_t object) const = 0;
+  /// By how much lengths within object number `object` (from 0) are off, relatively: its frame is right to
+  /// first order where the spacetime has no rigid motions.
+  virtual double distortion(std::size_t) const { return 0; }
 };
 
 /// Why an object, or the observer, cannot be traced; `limit` is the bounding radius that would do, where that

@@ -169,6 +169,17 @@ double for_each_band(const Tracer& tracer, const Camera& camera, int threads, co
   return 1e-9 * static_cast<double>(nanoseconds.load());
 }
 
+void note_distortions(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const double percent = 100 * tracer.distortion(i);
+    if (!(percent > 1)) continue;
+    std::array<char, 24> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %%", percent);
+    note(place + ": /objects/" + std::to_string(i) + ": note: '" + scene.objects[i].name +
+         "' is not small against the curvature: lengths in its frame are off by up to " + text.data());
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place) {
@@ -212,8 +223,9 @@ std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, 
 }
 
 Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& place, int threads,
-                    const Progress& progress) {
+                    const Progress& progress, const Note& note) {
   const auto tracer = prepare_scene(spacetime, scene, place);
+  if (note) note_distortions(*tracer, scene, place, note);
   Dataset dataset;
   Manifest& manifest = dataset.manifest;
   manifest.width = scene.camera.width;

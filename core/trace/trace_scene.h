@@ -36,8 +36,11 @@ void check_memory(const Camera& camera, std::uint64_t available, const std::stri
 std::vector<TracedBand> trace_bands(const Tracer& tracer, const Camera& camera, int threads,
                                     const Progress& progress, double& core_seconds);
 
+/// Called with a line for every doubt about the scene that does not hinder tracing.
+using Note = std::function<void(const std::string&)>;
+
 /// The whole way: prepares, traces, gathers, fingerprints.
 Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& place, int threads = 0,
-                    const Progress& progress = {});
+                    const Progress& progress = {}, const Note& note = {});
 
 }  // namespace nullcone
