@@ -1,0 +1,134 @@
+#include "apps/geodesic_outline.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/base/boost.h"
+
+namespace nullcone {
+
+namespace {
+
+using Vector = host::Vec3<double>;
+using host::dot, host::norm;
+
+constexpr std::array<const char*, 6> kColors = {"#1f6fb4", "#d9822b", "#3a9a5b",
+                                                "#a23e8c", "#8a6d1d", "#5c6773"};
+
+/// How an object's frame lies in the chart's x-y plane: rows of x and of y, for components in its rest frame.
+struct Projection {
+  PlanePoint centre;
+  std::array<Vector, 2> rows;
+
+  PlanePoint operator()(const Vector& X) const {
+    return {centre[0] + dot(rows[0], X), centre[1] + dot(rows[1], X)};
+  }
+};
+
+/// Where a worldline is at a chart time: Newton's method from the proper time of the record, or from 0.
+GeodesicPoint worldline_at(const Inquiry& inquiry, const Worldline& worldline, double time, double tau) {
+  Ray line{inquiry.spacetime, inquiry.parameters, worldline.event,
+           host::four_velocity(Vector{worldline.velocity}).c, inquiry.members[0].ray.accuracy};
+  if (inquiry.spacetime->description().closed_paths) line.accuracy.reset();
+  GeodesicPoint here = line.at(tau);
+  for (int i = 0; i < 50 && std::fabs(here.event[0] - time) > 1e-9; ++i) {
+    tau += (time - here.event[0]) / here.tangent[0];
+    here = line.at(tau);
+  }
+  return here;
+}
+
+Projection projection(const Inquiry& inquiry, const Object& object, double time, double tau) {
+  const Worldline& worldline = object.placing.worldline;
+  if (object.placing.type == PlacingType::coordinate)
+    return {{worldline.event[1], worldline.event[2]}, {Vector{{1, 0, 0}}, Vector{{0, 1, 0}}}};
+  GeodesicPoint here{0, worldline.event, {}};
+  host::Vec4<double> u = {{1, 0, 0, 0}};  // in the static tetrad
+  if (!worldline.is_static()) {
+    here = worldline_at(inquiry, worldline, time, tau);
+    u.c = in_static_tetrad(*inquiry.spacetime, inquiry.parameters, here.event, here.tangent);
+  }
+  const auto axes = inquiry.spacetime->static_tetrad(inquiry.parameters, here.event);
+  Projection out{{here.event[1], here.event[2]}, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    // A unit step along axis i of the rest frame, then along the worldline back to the same chart time.
+    host::Vec4<double> local{}, step{};
+    local[i + 1] = 1;
+    local = host::boost(host::opposite(u), local);
+    for (std::size_t a = 0; a < 4; ++a) step = step + local[a] * host::Vec4<double>{axes[a]};
+    const double late = worldline.is_static() ? 0 : step[0] / here.tangent[0];
+    for (std::size_t row = 0; row < 2; ++row) out.rows[row][i] = step[row + 1] - late * here.tangent[row + 1];
+  }
+  return out;
+}
+
+/// Of a sphere: where its surface turns away from the viewer, R A A^T n/|A^T n| for every direction n.
+std::vector<PlanePoint> sphere_outline(const Projection& A, double radius) {
+  std::vector<PlanePoint> out;
+  for (int i = 0; i < 120; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 120;
+    const Vector normal = std::cos(angle) * A.rows[0] + std::sin(angle) * A.rows[1];
+    out.push_back(A((radius / norm(normal)) * normal));
+  }
+  return out;
+}
+
+std::vector<PlanePoint> quad_outline(const Projection& A, const Object& object) {
+  std::vector<PlanePoint> out;
+  const Vector x = 0.5 * object.shape.edges[0] * Vector{object.placing.axes[0]},
+               y = 0.5 * object.shape.edges[1] * Vector{object.placing.axes[1]};
+  for (const auto& [sx, sy] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+    out.push_back(A(sx * x + sy * y));
+  return out;
+}
+
+std::vector<PlanePoint> circle(double radius) {
+  std::vector<PlanePoint> out;
+  for (int i = 0; i < 180; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 180;
+    out.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Stroke> object_outlines(const Inquiry& inquiry, double time) {
+  std::vector<Stroke> out;
+  if (!inquiry.traced) return out;
+  const TracedPixel& traced = *inquiry.traced;
+  for (std::size_t i = 0; i < traced.scene.objects.size(); ++i) {
+    const Object& object = traced.scene.objects[i];
+    if (object.shape.type == ShapeType::sky) continue;
+    double tau = 0;
+    for (const HitRecord& hit : traced.hits)
+      if (hit.id == i + 1) tau = hit.tau + traced.tau_origins[i];
+    const Projection A = projection(inquiry, object, time, tau);
+    const bool quad = object.shape.type == ShapeType::quad;
+    const auto kind = quad || object.shape.dome ? Stroke::Kind::outline : Stroke::Kind::filled;
+    out.push_back({kind, kColors[i % kColors.size()], object.name,
+                   quad ? quad_outline(A, object) : sphere_outline(A, object.shape.radius)});
+  }
+  return out;
+}
+
+std::vector<Stroke> landmarks(const Inquiry& inquiry) {
+  const MetricDescription metric = inquiry.spacetime->description();
+  const auto value = [&](std::string_view name) {
+    std::size_t i = 0;
+    while (metric.parameters[i].name != name) ++i;
+    return inquiry.parameters[i];
+  };
+  using Kind = Stroke::Kind;
+  if (metric.name == "goedel") return {{Kind::dashed, "#777", "Gödel radius 2a", circle(2 * value("a"))}};
+  if (metric.name == "ellis_wormhole")
+    return {{Kind::dashed, "#777", "throat", circle(0.5 * value("throat"))}};
+  if (metric.name == "kerr_schild") {
+    // Where r = r_+ on the equator: x^2 + y^2 = r_+^2 + a^2 = 2 M r_+.
+    const double M = value("mass"), spin = value("spin"), r = M * (1 + std::sqrt((1 - spin) * (1 + spin)));
+    return {{Kind::filled, "#111", "horizon", circle(std::sqrt(2 * M * r))}};
+  }
+  return {};
+}
+
+}  // namespace nullcone
