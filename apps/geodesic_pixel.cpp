@@ -1,37 +1,17 @@
 // The ray of one pixel of a scene, as the tracer follows it: backwards from the camera.
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "apps/geodesic_inquiry.h"
+#include "apps/scene_text.h"
 #include "core/base/boost.h"
 #include "core/base/error.h"
-#include "core/record/dataset_file.h"
-#include "core/trace/hamilton.h"
 #include "core/trace/trace_scene.h"
 #include "metrics/registry.h"
 
 namespace nullcone {
 
 namespace {
-
-/// The text of a scene: a JSON file, or the scene that a dataset carries in its header.
-std::string scene_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);  // read once, from the front: it may be a pipe
-  if (!in) throw InputError(path, "cannot open the file; expected a scene (.json) or a dataset (.exr)");
-  std::string text;
-  std::vector<char> block(4);
-  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (text == "\x76\x2f\x31\x01") return read_manifest(path).scene;
-    if (text.size() > std::size_t{64} << 20)
-      throw InputError(path, "is larger than 64 MiB; expected a scene");
-    block.resize(1 << 16);
-  }
-  if (in.bad() || text.empty())
-    throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
-  return text;
-}
 
 /// "X,Y": whole numbers within the picture.
 std::vector<int> pixel_of(const std::string& text, const Camera& camera) {
@@ -48,35 +28,12 @@ std::vector<int> pixel_of(const std::string& text, const Camera& camera) {
   return out;
 }
 
-/// The one metric tensor of an event, dressed as a metric, for what needs nothing else.
-struct MetricAt {
-  static constexpr std::string_view name = "g at an event";
-  static constexpr std::tuple<> parameters{};
-  host::Matrix4<double> components;
-
-  host::Matrix4<double> g(const host::Vec4<double>&) const { return components; }
-};
-
-/// g from an orthonormal frame: g^mn = sum_a eta^aa e_a^m e_a^n.
-MetricAt metric_at(const Spacetime& spacetime, std::span<const double> parameters, const Event& event) {
-  const auto axes = spacetime.static_tetrad(parameters, event);
-  host::Matrix4<double> inverse{};
-  for (std::size_t m = 0; m < 4; ++m)
-    for (std::size_t n = 0; n < 4; ++n)
-      for (std::size_t a = 0; a < 4; ++a) inverse[m][n] += (a == 0 ? 1 : -1) * axes[a][m] * axes[a][n];
-  return {host::inverse(inverse)};
-}
-
-/// The photon that arrives at the centre of the pixel, followed into the past; frequency 1 for the camera.
-Event past_tangent(const Inquiry& inquiry, const Scene& scene, const std::vector<int>& pixel) {
-  const Observer& observer = scene.observer;
+/// The photon that arrives at the centre of the pixel, followed into the past, in the observer's frame;
+/// frequency 1 for the camera.
+Event past_tangent(const Scene& scene, const std::vector<int>& pixel) {
   const auto look = host::look_direction(scene.camera, pixel[0] + 0.5, pixel[1] + 0.5);
-  const auto u = host::four_velocity(host::Vec3<double>{observer.velocity});
-  const host::Vec4<double> k = -host::seen_photon(u, look);
-  if (observer.frame == ObserverFrame::at_rest) return k.c;
-  const MetricAt metric = metric_at(*inquiry.spacetime, inquiry.parameters, observer.event);
-  const auto frame = host::observer_tetrad(metric, host::Vec4<double>{observer.event}, observer.frame);
-  return in_static_tetrad(*inquiry.spacetime, inquiry.parameters, observer.event, frame.to_chart(k).c);
+  const auto u = host::four_velocity(host::Vec3<double>{scene.observer.velocity});
+  return (-host::seen_photon(u, look)).c;
 }
 
 void trace(const Tracer& tracer, TracedPixel& traced) {
@@ -142,10 +99,10 @@ Inquiry inquire_pixel(const GeodesicOptions& options) {
     throw InputError("--paths", "the observer's frame \"normal\" needs integrated paths");
   traced.pixel = pixel_of(options.pixel, scene.camera);
   const auto tracer = prepare_scene(*out.spacetime, scene, options.scene);
-  check_tetrad(*out.spacetime, out.parameters, scene.observer.event, options.scene + ": /observer/event");
   trace(*tracer, traced);
 
-  Ray ray{out.spacetime, out.parameters, scene.observer.event, past_tangent(out, scene, traced.pixel), {}};
+  Ray ray{out.spacetime,       out.parameters, scene.observer.event, past_tangent(scene, traced.pixel), {},
+          scene.observer.frame};
   if (scene.integrated) ray.accuracy = scene.accuracy;
   out.plot_to = last_lambda(ray, traced);
   out.lambda = evenly_spaced(0, out.plot_to, options.points == 0 ? 400 : options.points);

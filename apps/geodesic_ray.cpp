@@ -8,7 +8,7 @@
 namespace nullcone {
 
 std::vector<GeodesicPoint> Ray::at(std::span<const double> lambda) const {
-  return spacetime->geodesic(parameters, event, k, lambda, accuracy ? &*accuracy : nullptr);
+  return spacetime->geodesic(parameters, event, k, lambda, accuracy ? &*accuracy : nullptr, frame);
 }
 
 std::vector<NamedValue> Ray::conserved(const GeodesicPoint& point) const {
@@ -16,8 +16,11 @@ std::vector<NamedValue> Ray::conserved(const GeodesicPoint& point) const {
 }
 
 double Ray::square(const GeodesicPoint& point) const {
-  const Event local = in_static_tetrad(*spacetime, parameters, point.event, point.tangent);
-  return local[0] * local[0] - (local[1] * local[1] + local[2] * local[2] + local[3] * local[3]);
+  const auto g = spacetime->metric(parameters, point.event);
+  double out = 0;
+  for (std::size_t m = 0; m < 4; ++m)
+    for (std::size_t n = 0; n < 4; ++n) out += g[m][n] * point.tangent[m] * point.tangent[n];
+  return out;
 }
 
 std::string status_word(const GeodesicPoint& point) {

@@ -13,13 +13,14 @@ namespace nullcone {
 struct Ray {
   const Spacetime* spacetime;
   std::vector<double> parameters;
-  Event event, k;                    ///< k: components in the static tetrad
+  Event event, k;                    ///< k: components in the tetrad of `frame`
   std::optional<Accuracy> accuracy;  ///< integrated with it; without it, by the closed form
+  ObserverFrame frame = ObserverFrame::at_rest;
 
   std::vector<GeodesicPoint> at(std::span<const double> lambda) const;
   GeodesicPoint at(double lambda) const { return at({&lambda, 1})[0]; }
   std::vector<NamedValue> conserved(const GeodesicPoint& point) const;
-  /// The square g(k, k) of the tangent at a point; NaN where no static observer exists.
+  /// The square g(k, k) of the tangent at a point.
   double square(const GeodesicPoint& point) const;
 };
 

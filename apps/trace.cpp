@@ -4,10 +4,9 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "apps/preview.h"
+#include "apps/scene_text.h"
 #include "apps/tool.h"
 #include "core/base/error.h"
 #include "core/trace/trace_scene.h"
@@ -16,24 +15,6 @@
 namespace {
 
 using namespace nullcone;
-
-/// The text of a scene: a JSON file, or the scene that a dataset carries in its header.
-std::string scene_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);  // read once, from the front: it may be a pipe
-  if (!in) throw InputError(path, "cannot open the file; expected a scene (.json) or a dataset (.exr)");
-  std::string text;
-  std::vector<char> block(4);
-  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (text == "\x76\x2f\x31\x01") return read_manifest(path).scene;
-    if (text.size() > std::size_t{64} << 20)
-      throw InputError(path, "is larger than 64 MiB; expected a scene");
-    block.resize(1 << 16);
-  }
-  if (in.bad() || text.empty())
-    throw InputError(path, "is empty or cannot be read; expected a scene (.json)");
-  return text;
-}
 
 /// Set by SIGINT and SIGTERM: tracing then ends after the bands in flight, and nothing is left behind. What
 /// is already being written is finished. A second signal ends the program at once.

@@ -52,8 +52,9 @@ class Panel:
     def grid(self, column):
         for power, text in zip(range(X_RANGE[0], X_RANGE[1] + 1), ("0.1 µs", "1 µs", "10 µs", "100 µs")):
             x = self.x(10.0**power)
+            anchor = "start" if power == X_RANGE[0] else "end" if power == X_RANGE[1] else "middle"
             self.parts.append(f'<line x1="{x:.1f}" y1="{self.y0}" x2="{x:.1f}" y2="{self.y0 + HEIGHT}" stroke="#ddd"/>'
-                              f'<text x="{x:.1f}" y="{self.y0 + HEIGHT + 16}" text-anchor="middle">{text}</text>')
+                              f'<text x="{x:.1f}" y="{self.y0 + HEIGHT + 16}" text-anchor="{anchor}">{text}</text>')
         for power in range(Y_RANGE[0], Y_RANGE[1] + 1, 2):
             y = self.y(10.0**power)
             self.parts.append(f'<line x1="{self.x0}" y1="{y:.1f}" x2="{self.x0 + WIDTH}" y2="{y:.1f}" stroke="#ddd"/>')

@@ -39,13 +39,18 @@ class Kernel final : public Spacetime {
     const auto tetrad = NULLCONE_ISA::static_tetrad(make_metric<M>(values), Vec4<double>{event});
     return {tetrad.e[0].c, tetrad.e[1].c, tetrad.e[2].c, tetrad.e[3].c};
   }
+  std::array<Event, 4> metric(std::span<const double> values, const Event& event) const override {
+    const auto g = make_metric<M>(values).g(Vec4<double>{event});
+    return {g[0].c, g[1].c, g[2].c, g[3].c};
+  }
   std::vector<GeodesicPoint> geodesic(std::span<const double> values, const Event& event, const Event& k,
-                                      std::span<const double> lambda,
-                                      const Accuracy* accuracy) const override {
+                                      std::span<const double> lambda, const Accuracy* accuracy,
+                                      ObserverFrame frame) const override {
     const M metric = make_metric<M>(values);
     if (accuracy || !HasClosedPaths<M>) {
-      const auto tangent = NULLCONE_ISA::static_tetrad(metric, Vec4<double>{event}).to_chart(Vec4<double>{k});
-      return NULLCONE_GEODESIC_INTEGRATED(values, event, tangent.c, lambda, accuracy ? *accuracy : kBalanced);
+      const auto tangent = observer_tetrad(metric, Vec4<double>{event}, frame).to_chart(Vec4<double>{k});
+      return NULLCONE_GEODESIC_INTEGRATED(values, event, tangent.c, lambda,
+                                          accuracy ? *accuracy : Accuracy{});
     }
     std::vector<GeodesicPoint> out;
     if constexpr (HasClosedPaths<M>) {

@@ -256,7 +256,7 @@ done
 refused "none.json: cannot open" none.json --pixel 1,1
 refused "empty: is empty" empty --pixel 1,1
 refused "broken.json: line 2, column 7" broken.json --pixel 1,1
-refused "ergo.json: /observer" ergo.json --pixel 1,1
+ray ergo.json --pixel 1,1  # nobody can rest there, but normal observers can look
 refused "--paths: the observer's frame" flat_normal.json --pixel 1,1 --paths closed
 refused "has no closed-form paths" "${hole[@]}" --direction 1,0,0 --at 1 --paths closed
 refused "has no closed-form paths" hole.json --pixel 1,1 --paths closed

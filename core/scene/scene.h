@@ -38,7 +38,7 @@ struct Accuracy {
   Integrator integrator = Integrator::prince_dormand87;
 };
 /// What scenes may name; set by the study in docs/accuracy.md.
-inline constexpr Accuracy kDraft{1e-4, 0, Integrator::verner65}, kBalanced{1e-8}, kReference{1e-12};
+inline constexpr Accuracy kDraft{1e-4, 0, Integrator::verner65}, kBalanced{}, kReference{1e-12};
 
 enum class ShapeType { sphere, quad, sky };
 

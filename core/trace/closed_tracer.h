@@ -79,6 +79,7 @@ class ClosedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return origins_[object]; }
+  double distortion(std::size_t) const override { return 0; }
 
  private:
   template <class P>

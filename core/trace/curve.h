@@ -86,18 +86,29 @@ struct Curve {
   }
 };
 
-/// Whether a step can come near a ball about the origin: a capsule around the chord, as thick as twice what
-/// the cubic through both ends swells, and a little of the chord's length for what the cubic does not know.
+/// Where a step runs: a capsule around its chord, as thick as twice what the cubic through both ends swells,
+/// and a little of the chord's length for what the cubic does not know.
 template <class S>
-Mask<S> may_come_near(const Vec3<S>& X0, const Vec3<S>& slope0, const Vec3<S>& X1, const Vec3<S>& slope1,
-                      const S& length, double ball) {
-  const Vec3<S> chord = X1 - X0, middle = S(0.5) * (X0 + X1);
-  const S swell = S(0.3) * (norm(length * slope0 - chord) + norm(length * slope1 - chord));
-  const S thickness = S(ball) + swell + S(0.02) * norm(chord);
-  const S chord2 = dot(chord, chord);
-  const S along = max(S(-0.5), min(S(0.5), -dot(middle, chord) / max(chord2, S(1e-300))));
-  const Vec3<S> nearest = middle + along * chord;
-  return !(dot(nearest, nearest) > thickness * thickness);
-}
+struct Capsule {
+  Vec3<S> middle, chord;
+  S over_chord2, thickness;
+
+  Capsule(const Vec3<S>& X0, const Vec3<S>& slope0, const Vec3<S>& X1, const Vec3<S>& slope1, const S& length)
+      : middle(S(0.5) * (X0 + X1)), chord(X1 - X0) {
+    const S chord2 = dot(chord, chord);
+    over_chord2 = S(1.0) / max(chord2, S(1e-300));
+    thickness =
+        S(0.3) * (norm(length * slope0 - chord) + norm(length * slope1 - chord)) + S(0.02) * sqrt(chord2);
+  }
+
+  /// Whether it may touch the ball. True for NaN.
+  Mask<S> touches(const Vec3<S>& centre, const S& radius) const {
+    const Vec3<S> to_centre = centre - middle;
+    const S along = max(S(-0.5), min(S(0.5), dot(to_centre, chord) * over_chord2));
+    const Vec3<S> nearest = to_centre - along * chord;
+    const S reach = radius + thickness;
+    return !(dot(nearest, nearest) > reach * reach);
+  }
+};
 
 NULLCONE_KERNEL_END

@@ -93,7 +93,7 @@ class IntegratedTracer final : public Tracer {
     const M& metric = setting_.system.metric;
     if (object.placing.type == PlacingType::coordinate) {
       const ChartBody<M> body{metric, event, axes_of(object.placing)};
-      return keep(Marched<FixedMap, ChartBody<M>, S>{{spatial(event), body.axes}, body, shape}, object,
+      return keep(Marched<FixedMap, ChartBody<M>, S>{{spatial(event), body.axes, 1}, body, shape}, object,
                   number, observation_[0] - event[0], unfit);
     }
     if constexpr (HasIsometry<M>) {
@@ -111,10 +111,12 @@ class IntegratedTracer final : public Tracer {
           "rest, with \"axes\": \"static\"";
       if (!object.placing.worldline.is_static() || object.placing.gyroscope_axes) return false;
       const TangentBody body = tangent_body(metric, event, axes_of(object.placing));
-      return keep(
-          Marched<FixedMap, TangentBody, S>{
-              {spatial(event), product(body.axes, body.from_chart)}, body, shape},
-          object, number, body.first_guess(observation_), unfit);
+      distortions_[number - 1] = distortion_of(metric, body, shape.bounding_radius());
+      const FixedMap map{
+          spatial(event), product(body.axes, body.from_chart),
+          stretch_of({spatial(body.tetrad.e[1]), spatial(body.tetrad.e[2]), spatial(body.tetrad.e[3])})};
+      return keep(Marched<FixedMap, TangentBody, S>{map, body, shape}, object, number,
+                  body.first_guess(observation_), unfit);
     }
   }
 
@@ -131,7 +133,12 @@ class IntegratedTracer final : public Tracer {
     }
     if (setting_.moving) setting_.reach = 1e12 * setting_.reach;
     setting_.inside = std::max(setting_.inside, 0.0);
-    objects_[setting_.count++] = {number, ball, {marched}};
+    MarchObject<M>& made = objects_[setting_.count++];
+    made = {number, ball, {}, -1, {marched}};
+    if constexpr (std::is_same_v<Map, FixedMap>) {
+      made.centre = marched.map.centre;
+      made.chart_ball = marched.map.stretch * ball;
+    }
     origins_[number - 1] = origin;
     return true;
   }

@@ -116,10 +116,13 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
     const auto stuck =
         active & !a.accepted & !(progress > S(1e-14) * length_scale(system.metric, to_phase(flight.y).x));
     auto near = waits & !waits;
-    if (any(taken))
+    if (setting.count > 0 && any(taken)) {
+      const Phase<S> from = to_phase(flight.y), rate = to_phase(flight.dy), to = to_phase(a.y1),
+                     end_rate = to_phase(a.dy1);
+      const Capsule<S> capsule(spatial(from.x), spatial(rate.x), spatial(to.x), spatial(end_rate.x), a.h);
       for (std::size_t k = 0; k < setting.count; ++k)
-        near = near | setting.objects[k].may_come_near(to_phase(flight.y), to_phase(flight.dy),
-                                                       to_phase(a.y1), to_phase(a.dy1), a.h);
+        near = near | setting.objects[k].may_come_near(capsule, from, rate, to, end_rate, a.h);
+    }
     near = near & taken;
     waits = waits | near;
     y1 = select(near, a.y1, y1);

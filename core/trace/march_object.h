@@ -17,6 +17,7 @@ struct Located {
 struct FixedMap {
   Vec3<double> centre;
   Matrix3<double> to_object;
+  double stretch;  ///< a length in the object's frame is at most so many times as long in the chart
 
   template <class S>
   Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
@@ -75,6 +76,19 @@ struct TangentBody {
   }
 };
 
+/// An upper bound of how much a matrix with these columns stretches: the root of its row and column norms'
+/// product.
+inline double stretch_of(const std::array<Vec3<double>, 3>& columns) {
+  double largest_column = 0, largest_row = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double column = 0, row = 0;
+    for (std::size_t j = 0; j < 3; ++j) column += std::fabs(columns[i][j]), row += std::fabs(columns[j][i]);
+    largest_column = std::max(largest_column, column);
+    largest_row = std::max(largest_row, row);
+  }
+  return std::sqrt(largest_column * largest_row);
+}
+
 inline Matrix3<double> product(const Matrix3<double>& a, const Matrix3<double>& b) {
   Matrix3<double> out;
   for (std::size_t i = 0; i < 3; ++i) out[i] = a[i][0] * b[0] + a[i][1] * b[1] + a[i][2] * b[2];
@@ -131,15 +145,19 @@ template <Metric M>
 struct MarchObject {
   std::uint32_t number = 0;  ///< from 1
   double ball = 0;           ///< bounding radius in the object's frame
+  /// A ball of chart coordinates that holds the object, where it is fixed in the chart; else negative.
+  Vec3<double> centre{};
+  double chart_ball = -1;
   typename AnyMarched<M>::Type marched{};
 
-  /// Whether a step from `from` to `to` may meet the object at all.
+  /// Whether a step from `from` to `to`, in the chart within `capsule`, may meet the object at all.
   template <class S>
-  Mask<S> may_come_near(const Phase<S>& from, const Phase<S>& rate, const Phase<S>& to,
-                        const Phase<S>& end_rate, const S& length) const {
+  Mask<S> may_come_near(const Capsule<S>& capsule, const Phase<S>& from, const Phase<S>& rate,
+                        const Phase<S>& to, const Phase<S>& end_rate, const S& length) const {
+    if (chart_ball >= 0) return capsule.touches(convert<S>(centre), S(chart_ball));
     return with_type(marched, [&](const auto& object) {
       const Located<S> a = object.map.locate(from.x, rate.x), b = object.map.locate(to.x, end_rate.x);
-      return NULLCONE_ISA::may_come_near(a.X, a.slope, b.X, b.slope, length, ball);
+      return Capsule<S>(a.X, a.slope, b.X, b.slope, length).touches(Vec3<S>{}, S(ball));
     });
   }
 

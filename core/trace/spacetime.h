@@ -43,7 +43,7 @@ class Tracer {
   virtual double tau_origin(std::size_t object) const = 0;
   /// By how much lengths within object number `object` (from 0) are off, relatively: its frame is right to
   /// first order where the spacetime has no rigid motions.
-  virtual double distortion(std::size_t) const { return 0; }
+  virtual double distortion(std::size_t object) const = 0;
 };
 
 /// Why an object, or the observer, cannot be traced; `limit` is the bounding radius that would do, where that
@@ -77,11 +77,15 @@ class Spacetime {
   /// Axes e_0 … e_3 of the static tetrad at an event, in chart components.
   virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters,
                                              const Event& event) const = 0;
-  /// The geodesic with tangent k (components in the static tetrad) at the event, at each affine parameter: by
-  /// its closed form, or integrated where there is none or `accuracy` is given.
+  /// Covariant components of g at an event, rows first.
+  virtual std::array<Event, 4> metric(std::span<const double> parameters, const Event& event) const = 0;
+  /// The geodesic with tangent k (components in the static tetrad, or in that of `frame` where it is
+  /// integrated) at the event, at each affine parameter: by its closed form, or integrated where there is
+  /// none or `accuracy` is given.
   virtual std::vector<GeodesicPoint> geodesic(std::span<const double> parameters, const Event& event,
                                               const Event& k, std::span<const double> lambda,
-                                              const Accuracy* accuracy = nullptr) const = 0;
+                                              const Accuracy* accuracy = nullptr,
+                                              ObserverFrame frame = ObserverFrame::at_rest) const = 0;
   /// Evaluates the closed form (or where there is none, the right-hand side) at `count` affine parameters
   /// `step` apart, as wide as the kernel is, and sums what it finds: the yardstick of benchmarks.
   virtual double walk(std::span<const double> parameters, const Event& event, const Event& k, double step,
