@@ -60,7 +60,7 @@ void march_chunk(Stepper& stepper, const MarchSetting<M>& setting, const Rays& r
     const Group<S> group(flights.list.get(), i, rays.count);
     const State<S> y = load(group, flights.y);
     group.store(
-        first_step<Stepper::kOrder>(setting.system.metric, y, setting.system.rate(y), setting.accuracy.rtol),
+        first_step<Stepper::kRoots>(setting.system.metric, y, setting.system.rate(y), setting.accuracy.rtol),
         flights.h);
     group.store(S(kGrowth), flights.growth);
   }
@@ -104,7 +104,7 @@ double step_packs(Stepper& stepper, const HamiltonSystem<M>& system, const Accur
       flight.y[c] = Lanes<S>::load(column.data());
     }
     flight.dy = system.rate(flight.y);
-    flight.h = first_step<Stepper::kOrder>(system.metric, flight.y, flight.dy, accuracy.rtol);
+    flight.h = first_step<Stepper::kRoots>(system.metric, flight.y, flight.dy, accuracy.rtol);
     const Mask<S> all_lanes = flight.h == flight.h;
     for (int k = 0; k < attempts; ++k) {
       const Attempt<S> a = attempt(stepper, system, accuracy, flight, next_step(system.metric, flight, far));

@@ -172,7 +172,7 @@ double refused_share(const Place& place, const Accuracy& accuracy, const std::ve
         Flight<double> flight;
         flight.y.c = ray.y;
         flight.dy = system.rate(flight.y);
-        flight.h = first_step<Stepper::kOrder>(metric, flight.y, flight.dy, accuracy.rtol);
+        flight.h = first_step<Stepper::kRoots>(metric, flight.y, flight.dy, accuracy.rtol);
         double end = 0;
         for (int i = 0; i < 20000 && flight.lambda < place.length; ++i) {
           if (end != 0 && end < as_scalar<double>(Ending::sky)) break;

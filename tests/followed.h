@@ -25,7 +25,7 @@ Followed follow(const M& metric, const host::Vec4<double>& event, const host::Ve
     Flight<double> flight;
     flight.y = to_state(Phase<double>{event, metric.g(event) * k});
     flight.dy = system.rate(flight.y);
-    flight.h = first_step<Stepper::kOrder>(metric, flight.y, flight.dy, accuracy.rtol);
+    flight.h = first_step<Stepper::kRoots>(metric, flight.y, flight.dy, accuracy.rtol);
     Followed out;
     while (out.end == 0 && !out.given_up && flight.lambda < limit) {
       const auto a =

@@ -203,5 +203,30 @@ refused 2 "--at" "$geodesic" --metric goedel --event 0,0,0,0 --direction 1,0,0
 refused 1 "standard output: cannot write" bash -c \
   "exec '$geodesic' --metric goedel --event 0,0,0,0 --direction 1,0,0 --at 1 --json >/dev/full"
 
+# Spacetimes, checked; and what a black hole does to a large object.
+check=$bin/nullcone-check-metric
+run 0 "$check" ellis_wormhole --set throat=2 --events 40
+run 0 "$check" kerr_schild --set spin=0.9 --set chart=ingoing --events 40 --json
+expect "len(d) > 0"
+refused 2 "metric nosuch: unknown" "$check" nosuch
+refused 2 "--set spin=2" "$check" kerr_schild --set spin=2
+refused 2 "--set chart=sideways" "$check" kerr_schild --set chart=sideways
+refused 2 "--events" "$check" goedel --events nan
+python3 - <<'PYTHON'
+import json
+scene = {"metric": {"name": "kerr_schild"}, "observer": {"event": [0, 20, 0, 0]}, "camera": {"type": "perspective",
+  "azimuth_deg": 180, "fov_deg": 40, "resolution": [24, 18]}, "accuracy": "draft", "objects": [{"name": "big",
+  "shape": {"type": "sphere", "radius": 2}, "placing": {"type": "local", "worldline": {"type": "static",
+  "event": [0, 0, 9, 0]}}}]}
+json.dump(scene, open("big.json", "w"))
+scene["objects"][0]["shape"]["radius"] = 0.05
+json.dump(scene, open("small.json", "w"))
+PYTHON
+run 0 "$trace" big.json -o big.exr
+grep -q "big.json: /objects/0: note: 'big' is not small against the curvature" err || fault "no note: $(cat err)"
+run 0 "$trace" small.json -o small.exr
+grep -q "note" err && fault "a note on a small object: $(cat err)"
+silent "$trace" big.json -o big.exr --quiet
+
 printf '%d checks, %d faults\n' "$checks" "$faults"
 [ "$faults" -eq 0 ]

@@ -31,8 +31,9 @@ Vec3<S> look_direction(const Camera& camera, const S& x, const S& y) {
   const auto forward = convert<S>(camera.forward), left = convert<S>(camera.left), up = convert<S>(camera.up);
   const S across = S(0.5) - x * S(1.0 / camera.width), along = S(0.5) - y * S(1.0 / camera.height);
   if (camera.type == CameraType::perspective) {
-    const S to_left = across * S(2 * std::tan(0.5 * camera.fov_horizontal));
-    const S to_top = along * S(2 * std::tan(0.5 * camera.fov_vertical));
+    const auto horizontal = sincos(0.5 * camera.fov_horizontal), vertical = sincos(0.5 * camera.fov_vertical);
+    const S to_left = across * S(2 * horizontal.sin / horizontal.cos);
+    const S to_top = along * S(2 * vertical.sin / vertical.cos);
     return normalised(forward + to_left * left + to_top * up);
   }
   const auto azimuth = sincos(across * S(camera.fov_horizontal));

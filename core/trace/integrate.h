@@ -56,15 +56,17 @@ struct Attempt {
   State<S> y1, dy1;
   S h, error;  ///< length of the step, and its relative local error
   S factor;    ///< by which the next step should be longer
-  Mask<S> accepted;
+  Mask<S> accepted, finite;
 };
 
-/// A first step that is surely not too long by much: the controller makes it longer soon. Positive.
-template <int kOrder, Metric M, class S>
+/// A first step that is surely not too long by much: the controller makes it longer soon. Positive. (Roots
+/// alone: pow would bring code that instruction sets share.)
+template <int kRoots, Metric M, class S>
 S first_step(const M& metric, const State<S>& y, const State<S>& dy, double rtol) {
   const S speed = max(norm(spatial(to_phase(dy).x)), abs(dy[0]));
-  const double part = 0.5 * std::pow(std::max(rtol, 1e-14), 1.0 / kOrder);
-  return S(part) * length_scale(metric, to_phase(y).x) / max(speed, S(1e-300));
+  double part = max(rtol, 1e-14);
+  for (int i = 0; i < kRoots; ++i) part = sqrt(part);
+  return S(0.5 * part) * length_scale(metric, to_phase(y).x) / max(speed, S(1e-300));
 }
 
 /// Tries a step of length h. Errors of position are measured against the metric's length scale, those of
@@ -89,12 +91,12 @@ NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& sy
   S sum = out.y1[0];
   for (std::size_t i = 1; i < 8; ++i) sum = sum + out.y1[i];
   const S nothing = (sum - sum) + (error[0] - error[0]) + (error[4] - error[4]);
-  const auto finite = nothing == S(0.0);
-  out.accepted = (e <= S(1.0)) & finite;
+  out.finite = nothing == S(0.0);
+  out.accepted = (e <= S(1.0)) & out.finite;
   out.error = S(accuracy.rtol) * e;
   S root = sqrt(e);
   for (int i = 1; i < Stepper::kRoots; ++i) root = sqrt(root);
-  out.factor = select(finite, max(S(kShrink), min(from.growth, S(kSafety) / root)), S(kShrink));
+  out.factor = select(out.finite, max(S(kShrink), min(from.growth, S(kSafety) / root)), S(kShrink));
   return out;
 }
 

@@ -56,7 +56,7 @@ std::vector<GeodesicPoint> integrated_geodesic(const M& metric, const Vec4<doubl
       Flight<double> start;
       start.y = to_state(Phase<double>{event, metric.g(event) * (way * k)});
       start.dy = system.rate(start.y);
-      start.h = first_step<Stepper::kOrder>(metric, start.y, start.dy, accuracy.rtol);
+      start.h = first_step<Stepper::kRoots>(metric, start.y, start.dy, accuracy.rtol);
       Traveller<Stepper, M> traveller{stepper, system, accuracy, start};
       for (const std::size_t i : order) {
         if (std::signbit(lambda[i]) != (way < 0)) continue;

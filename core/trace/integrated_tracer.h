@@ -160,7 +160,7 @@ class IntegratedTracer final : public Tracer {
       const State<Wide> y = to_state(start);
       group.store(Wide(kGrowth), flights.growth);
       store(group, y, flights.y);
-      group.store(first_step<Stepper::kOrder>(metric, y, setting_.system.rate(y), setting_.accuracy.rtol),
+      group.store(first_step<Stepper::kRoots>(metric, y, setting_.system.rate(y), setting_.accuracy.rtol),
                   flights.h);
     }
   }

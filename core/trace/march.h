@@ -4,49 +4,11 @@
 #pragma once
 
 #include "core/trace/curve.h"
+#include "core/trace/flights.h"
 #include "core/trace/integrate.h"
-#include "core/trace/kernel.h"
 #include "core/trace/march_object.h"
 
 NULLCONE_KERNEL_BEGIN
-
-/// Most attempts of a step that a ray may take; beyond it the pixel is marked doubtful.
-inline constexpr double kStepLimit = 20000;
-
-/// Rays on their way, as columns. `y` is where the last step that was looked at closely began, once a ray has
-/// hit: the crossing then lies `delta` further.
-struct Flights {
-  std::size_t count;
-  std::unique_ptr<double[]> memory;
-  std::array<double*, 8> y{}, y1{};  ///< y1: end of the step that waits to be looked at
-  double *lambda, *h, *growth, *steps, *error, *length, *delta;
-  std::unique_ptr<std::uint32_t[]> object, list, waiting;
-  std::unique_ptr<Status[]> status;
-  std::size_t listed = 0, waits = 0;
-
-  explicit Flights(std::size_t rays)
-      : count(rays),
-        memory(new double[23 * rays]()),
-        object(new std::uint32_t[rays]()),
-        list(new std::uint32_t[rays]),
-        waiting(new std::uint32_t[rays]),
-        status(new Status[rays]()) {
-    double* next = memory.get();
-    const auto column = [&] { return std::exchange(next, next + rays); };
-    for (std::size_t i = 0; i < 8; ++i) y[i] = column(), y1[i] = column();
-    lambda = column(), h = column(), growth = column(), steps = column(), error = column(), length = column(),
-    delta = column();
-  }
-};
-
-template <class S>
-State<S> load(const Group<S>& group, const std::array<double*, 8>& columns) {
-  return State<S>::map([&](std::size_t i) { return group.load(columns[i]); });
-}
-template <class S>
-void store(const Group<S>& group, const State<S>& y, const std::array<double*, 8>& columns) {
-  for (std::size_t i = 0; i < 8; ++i) group.store(y[i], columns[i]);
-}
 
 /// All that a march needs to know; the same for every ray.
 template <Metric M>
@@ -88,74 +50,95 @@ inline Status status_of(double end) {
                                                         : Status::sky;
 }
 
-/// Takes a group of rays up to `rounds` attempts further. Those that go on are listed again, those that come
-/// near an object wait.
+/// The rays of a group while they take steps; lanes that are no longer active stand still.
+template <class S>
+struct Marching {
+  Flight<S> flight;
+  State<S> y1;  ///< where the step ends that comes near an object, and how long it is
+  S length = S(0.0);
+  S end = S(0.0);  ///< an Ending
+  Mask<S> active, near, given_up, broken;
+
+  explicit Marching(const Flight<S>& from) : flight(from), y1(from.y) {
+    active = from.lambda == from.lambda;
+    near = given_up = broken = active & !active;
+  }
+};
+
+/// Whether a step may meet any object.
+template <Metric M, class S>
+Mask<S> comes_near(const MarchSetting<M>& setting, const Flight<S>& flight, const Attempt<S>& a) {
+  const Phase<S> from = to_phase(flight.y), rate = to_phase(flight.dy), to = to_phase(a.y1),
+                 end_rate = to_phase(a.dy1);
+  const Capsule<S> capsule(spatial(from.x), spatial(rate.x), spatial(to.x), spatial(end_rate.x), a.h);
+  auto near = a.accepted & !a.accepted;
+  for (std::size_t k = 0; k < setting.count; ++k)
+    near = near | setting.objects[k].may_come_near(capsule, from, rate, to, end_rate, a.h);
+  return near & a.accepted;
+}
+
+/// One attempt of a step for every active lane.
+template <class Stepper, Metric M, class S>
+void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) {
+  const auto& metric = setting.system.metric;
+  const S limit(setting.lookback);
+  Flight<S>& flight = m.flight;
+  const Attempt<S> a = attempt(stepper, setting.system, setting.accuracy, flight,
+                               next_step(metric, flight, limit - flight.lambda));
+  learn(flight, a, m.active);
+  // A step may also become too short to get anywhere.
+  const S progress = a.h * norm(spatial(to_phase(flight.dy).x));
+  const auto stuck =
+      m.active & !a.accepted & !(progress > S(1e-14) * length_scale(metric, to_phase(flight.y).x));
+  const auto near = m.active & comes_near(setting, flight, a), moves = m.active & a.accepted & !near;
+  m.near = m.near | near;
+  m.y1 = select(near, a.y1, m.y1);
+  m.length = select(near, a.h, m.length);
+  flight.y = select(moves, a.y1, flight.y);
+  flight.dy = select(moves, a.dy1, flight.dy);
+  flight.lambda = select(moves, flight.lambda + a.h, flight.lambda);
+  m.end = select(moves, ending_of(setting, flight.y, flight.dy), m.end);
+  m.broken = m.broken | (stuck & !a.finite);
+  m.given_up = m.given_up | stuck | (m.active & (flight.steps >= S(kStepLimit)) & !near);
+  m.active = m.active & !near & !m.given_up & (m.end == S(0.0)) & (flight.lambda < limit);
+}
+
+template <class S>
+void store(const Group<S>& group, const Marching<S>& m, const Flights& flights) {
+  store(group, m.flight.y, flights.y);
+  store(group, m.y1, flights.y1);
+  group.store(m.flight.lambda, flights.lambda);
+  group.store(m.flight.h, flights.h);
+  group.store(m.flight.growth, flights.growth);
+  group.store(m.flight.steps, flights.steps);
+  group.store(m.flight.error, flights.error);
+  group.store(m.length, flights.length);
+}
+
+/// Takes a group of rays up to `rounds` attempts further. Those that go on are listed again, from `left` on;
+/// those that come near an object wait.
 template <class Stepper, Metric M, class S>
 void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>& group, int rounds,
                    Flights& flights, std::size_t& left) {
-  const auto& system = setting.system;
-  Flight<S> flight;
-  flight.y = load(group, flights.y);
-  flight.dy = system.rate(flight.y);
-  flight.lambda = group.load(flights.lambda);
-  flight.h = group.load(flights.h);
-  flight.steps = group.load(flights.steps);
-  flight.error = group.load(flights.error);
-  flight.growth = group.load(flights.growth);
-  S end(0.0), length(0.0);
-  State<S> y1 = flight.y;
-  auto active = flight.lambda == flight.lambda, waits = active & !active, given_up = waits;
-  const S limit(setting.lookback);
-  for (int i = 0; i < rounds && any(active); ++i) {
-    const Attempt<S> a = attempt(stepper, system, setting.accuracy, flight,
-                                 next_step(system.metric, flight, limit - flight.lambda));
-    learn(flight, a, active);
-    const auto taken = active & a.accepted;
-    // A step may also become too short to get anywhere.
-    const S progress = abs(a.h) * norm(spatial(to_phase(flight.dy).x));
-    const auto stuck =
-        active & !a.accepted & !(progress > S(1e-14) * length_scale(system.metric, to_phase(flight.y).x));
-    auto near = waits & !waits;
-    if (setting.count > 0 && any(taken)) {
-      const Phase<S> from = to_phase(flight.y), rate = to_phase(flight.dy), to = to_phase(a.y1),
-                     end_rate = to_phase(a.dy1);
-      const Capsule<S> capsule(spatial(from.x), spatial(rate.x), spatial(to.x), spatial(end_rate.x), a.h);
-      for (std::size_t k = 0; k < setting.count; ++k)
-        near = near | setting.objects[k].may_come_near(capsule, from, rate, to, end_rate, a.h);
-    }
-    near = near & taken;
-    waits = waits | near;
-    y1 = select(near, a.y1, y1);
-    length = select(near, a.h, length);
-    const auto moves = taken & !near;
-    flight.y = select(moves, a.y1, flight.y);
-    flight.dy = select(moves, a.dy1, flight.dy);
-    flight.lambda = select(moves, flight.lambda + a.h, flight.lambda);
-    end = select(moves, ending_of(setting, flight.y, flight.dy), end);
-    given_up = given_up | stuck | (active & (flight.steps >= S(kStepLimit)) & !near);
-    active = active & !near & !given_up & (end == S(0.0)) & (flight.lambda < limit);
-  }
-  store(group, flight.y, flights.y);
-  store(group, y1, flights.y1);
-  group.store(flight.lambda, flights.lambda);
-  group.store(flight.h, flights.h);
-  group.store(flight.steps, flights.steps);
-  group.store(flight.error, flights.error);
-  group.store(flight.growth, flights.growth);
-  group.store(length, flights.length);
-  std::array<bool, Group<S>::kWidth> goes_on{}, waiting{}, doubtful{};
-  Lanes<S>::store(active, goes_on.data());
-  Lanes<S>::store(waits, waiting.data());
-  Lanes<S>::store(given_up, doubtful.data());
+  Flight<S> flight = load_flight(group, flights);
+  flight.dy = setting.system.rate(flight.y);
+  Marching<S> m(flight);
+  for (int i = 0; i < rounds && any(m.active); ++i) try_step(stepper, setting, m);
+  store(group, m, flights);
+  std::array<bool, Group<S>::kWidth> active{}, near{}, given_up{}, broken{};
+  Lanes<S>::store(m.active, active.data());
+  Lanes<S>::store(m.near, near.data());
+  Lanes<S>::store(m.given_up, given_up.data());
+  Lanes<S>::store(m.broken, broken.data());
   for (std::size_t lane = 0; lane < group.filled; ++lane) {
     const std::size_t ray = group.ray[lane];
-    const double how = Lanes<S>::get(end, lane);
-    if (goes_on[lane])
+    const double how = Lanes<S>::get(m.end, lane);
+    if (active[lane])
       flights.list[left++] = static_cast<std::uint32_t>(ray);
-    else if (waiting[lane])
+    else if (near[lane])
       flights.waiting[flights.waits++] = static_cast<std::uint32_t>(ray);
-    else if (doubtful[lane])
-      end_ray(setting, flights, ray, Status::step_limit, 0);
+    else if (given_up[lane])
+      end_ray(setting, flights, ray, broken[lane] ? Status::not_finite : Status::step_limit, 0);
     else if (how != 0)
       end_ray(setting, flights, ray, status_of(how), how);
     else
@@ -163,47 +146,70 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
   }
 }
 
-/// Looks closely at the waiting steps of a group: where do they first meet an object? Those that meet none go
-/// on.
+/// Evenly spaced states of a step, both ends included, and their rates.
+template <class S, std::size_t n>
+struct StepStates {
+  std::array<Phase<S>, n> at, rate;
+
+  template <class Stepper, Metric M>
+  StepStates(Stepper& stepper, const HamiltonSystem<M>& system, const State<S>& y, const State<S>& y1,
+             const S& length) {
+    const State<S> dy = system.rate(y);
+    at[0] = to_phase(y), rate[0] = to_phase(dy);
+    for (std::size_t k = 1; k < n; ++k) {
+      const S part(static_cast<double>(k) / (n - 1));
+      const State<S> here = k + 1 == n ? y1 : stepper.move(system, y, dy, part * length);
+      at[k] = to_phase(here), rate[k] = to_phase(system.rate(here));
+    }
+  }
+};
+
+/// What a close look at a step finds.
+template <class S>
+struct Look {
+  S delta, number;  ///< where an object is met, and its place in the list
+  Mask<S> met, lost;
+  S end;  ///< an Ending, at the end of the step
+};
+
+/// Looks closely at the waiting steps of a group: where do they first meet an object?
 template <class Stepper, Metric M, class S>
-void look_closely(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>& group, Flights& flights) {
+Look<S> look_closely(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>& group,
+                     const Flights& flights) {
   constexpr std::size_t n = Stepper::kOrder > 6 ? 4 : 3;
-  const auto& system = setting.system;
   const S length = group.load(flights.length);
-  std::array<Phase<S>, n> at, rate;  // evenly spaced along the step
-  State<S> y = load(group, flights.y), dy = system.rate(y);
-  at[0] = to_phase(y), rate[0] = to_phase(dy);
-  for (std::size_t k = 1; k < n; ++k) {
-    const State<S> here = k + 1 == n
-                              ? load(group, flights.y1)
-                              : stepper.move(system, y, dy, S(static_cast<double>(k) / (n - 1)) * length);
-    at[k] = to_phase(here), rate[k] = to_phase(system.rate(here));
-  }
-  S delta = length, number(0.0);
-  auto lost = delta != delta;
+  const State<S> y1 = load(group, flights.y1);
+  const StepStates<S, n> step(stepper, setting.system, load(group, flights.y), y1, length);
+  Look<S> out{length, S(0.0), length != length, length != length,
+              ending_of(setting, y1, to_state(step.rate[n - 1]))};
   for (std::size_t i = 0; i < setting.count; ++i) {
-    const Search<S> search = setting.objects[i].first_crossing(at, rate, length, delta);
-    delta = select(search.met, search.lambda, delta);
-    number = select(search.met, S(static_cast<double>(i)), number);
-    lost = lost | search.given_up;
+    const Search<S> search = setting.objects[i].first_crossing(step.at, step.rate, length, out.delta);
+    out.delta = select(search.met, search.lambda, out.delta);
+    out.number = select(search.met, S(static_cast<double>(i)), out.number);
+    out.met = out.met | search.met;
+    out.lost = out.lost | search.given_up;
   }
-  const auto met = delta < length;
+  return out;
+}
+
+/// Those whose step met nothing go on from its end.
+template <Metric M, class S>
+void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>& look, Flights& flights) {
   const S lambda = group.load(flights.lambda);
-  const State<S> y1 = to_state(at[n - 1]);
-  const S end = ending_of(setting, y1, to_state(rate[n - 1]));
-  store(group, select(met, y, y1), flights.y);
-  group.store(select(met, lambda, lambda + length), flights.lambda);
-  group.store(delta, flights.delta);
-  std::array<bool, Group<S>::kWidth> hit{}, doubtful{};
-  Lanes<S>::store(met, hit.data());
-  Lanes<S>::store(lost, doubtful.data());
+  store(group, select(look.met, load(group, flights.y), load(group, flights.y1)), flights.y);
+  group.store(select(look.met, lambda, lambda + group.load(flights.length)), flights.lambda);
+  group.store(look.delta, flights.delta);
+  std::array<bool, Group<S>::kWidth> met{}, lost{};
+  Lanes<S>::store(look.met, met.data());
+  Lanes<S>::store(look.lost, lost.data());
   for (std::size_t lane = 0; lane < group.filled; ++lane) {
     const std::size_t ray = group.ray[lane];
-    const double how = Lanes<S>::get(end, lane);
-    if (hit[lane]) {
+    const double how = Lanes<S>::get(look.end, lane);
+    if (met[lane]) {
       flights.status[ray] = Status::hit;
-      flights.object[ray] = setting.objects[static_cast<std::size_t>(Lanes<S>::get(number, lane))].number;
-    } else if (doubtful[lane] || flights.steps[ray] >= kStepLimit) {
+      flights.object[ray] =
+          setting.objects[static_cast<std::size_t>(Lanes<S>::get(look.number, lane))].number;
+    } else if (lost[lane] || flights.steps[ray] >= kStepLimit) {
       end_ray(setting, flights, ray, Status::step_limit, 0);
     } else if (how != 0) {
       end_ray(setting, flights, ray, status_of(how), how);
@@ -227,8 +233,10 @@ void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights) {
     for (std::size_t i = 0; i < flights.listed; i += Lanes<S>::count)
       advance_group(stepper, setting, Group<S>(flights.list.get(), i, flights.listed), kRound, flights, left);
     flights.listed = left;
-    for (std::size_t i = 0; i < flights.waits; i += Lanes<S>::count)
-      look_closely(stepper, setting, Group<S>(flights.waiting.get(), i, flights.waits), flights);
+    for (std::size_t i = 0; i < flights.waits; i += Lanes<S>::count) {
+      const Group<S> group(flights.waiting.get(), i, flights.waits);
+      settle(setting, group, look_closely(stepper, setting, group, flights), flights);
+    }
   }
 }
 
