@@ -1,36 +1,12 @@
 #!/usr/bin/env bash
 # nullcone-geodesic from outside: one ray, families, the ray of a pixel, pictures; facts of physics, and refusals.
 # Usage: geodesic_test.sh BIN_DIR SOURCE_DIR
-set -u
-bin=$(cd "$1" && pwd) || exit 2
-source_dir=$(cd "$2" && pwd) || exit 2
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/checks.sh"
 tests=$source_dir/tests
-work=$(mktemp -d) || exit 2
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 2
-trace=$bin/nullcone-trace info=$bin/nullcone-info geodesic=$bin/nullcone-geodesic
-faults=0 checks=0
 
-fault() { faults=$((faults + 1)); printf 'FAULT: %s\n' "$1"; }
-
-# run STATUS COMMAND...: runs within 60 s; output lands in the files out and err.
-run() {
-  local expected=$1 status
-  shift
-  checks=$((checks + 1))
-  timeout 60 "$@" >out 2>err </dev/null
-  status=$?
-  [ "$status" -eq "$expected" ] || fault "status $status, expected $expected: $* ($(head -c 300 err))"
-}
-# refused WORDS ARGUMENTS...: exit 2, nothing on stdout, exactly one line on stderr that holds the words.
-refused() {
-  local words=$1
-  shift
-  run 2 "$geodesic" "$@"
-  [ -s out ] && fault "talks on standard output: $*"
-  [ "$(wc -l <err)" -eq 1 ] || fault "$(wc -l <err) lines on standard error, expected 1: $*"
-  grep -qF -- "$words" err || fault "'$words' is not in '$(head -c 300 err)': $*"
-}
+# refused WORDS ARGUMENTS...: exit 2 with one line that holds the words.
+refused() { local words=$1; shift; refused_with 2 "$words" "$geodesic" "$@"; }
 ray() { run 0 "$geodesic" "$@"; [ -s err ] && fault "talks on standard error: $*"; }
 # expect PYTHON-EXPRESSION over what geodesic_expect.py has: d or table from the file out, closed from `keep`.
 expect() {
@@ -294,5 +270,4 @@ run 1 bash -c "ulimit -f 1; exec '$geodesic' ${goedel[*]} --fan 40 --at 0,6 --pl
 [ -s out ] && fault "reports although the picture could not be written"
 [ "$(cat before.svg)" = before ] || fault "a full disk cost the picture that was there"
 
-printf '%d checks, %d faults\n' "$checks" "$faults"
-[ "$faults" -eq 0 ]
+finish
