@@ -18,12 +18,12 @@ reading a dataset to bare OpenEXR, the demo | bench_dataset | dataset_read/pictu
 tracing the demo, one lane to AVX-512 | bench_trace | earth/onelane | earth/avx512 |
 tracing the demo, SSE2 to AVX2 | bench_trace | earth/sse2 | earth/avx2 |
 tracing the demo, SSE2 to AVX-512 | bench_trace | earth/sse2 | earth/avx512 |
+tracing three spheres at rest, SSE2 to AVX2 | bench_trace | three_spheres/sse2 | three_spheres/avx2 |
+tracing three spheres at rest, SSE2 to AVX-512 | bench_trace | three_spheres/sse2 | three_spheres/avx512 |
 tracing the demo, AVX-512 on one thread to two | bench_trace | earth/avx512 | earth/2_threads |
 evaluating a path, one lane to AVX-512 | bench_trace | evaluation/onelane | evaluation/avx512 |
 frames on one thread to two | bench_postrender | frames/black_body_mipmap/1 | frames/black_body_mipmap/2 |
 shading with SSE2 to AVX2 | bench_postrender | shade/black_body_mipmap/sse2 | shade/black_body_mipmap/avx2 |
-shading with SSE2 to AVX-512 | bench_postrender | shade/black_body_mipmap/sse2 | shade/black_body_mipmap/avx512 |
-shading one lane to AVX-512 | bench_postrender | shade/black_body_mipmap/onelane | shade/black_body_mipmap/avx512 |
 a frame on one thread to copying it | bench_postrender | frames/black_body_mipmap/1 | copy |
 '
 
@@ -65,7 +65,7 @@ def read_cases(path):
         return {}
     cases = {}
     for entry in json.loads(text)["benchmarks"]:
-        name = entry["run_name"].removesuffix("/real_time").removesuffix("/manual_time")
+        name = entry["run_name"].removesuffix("/real_time").removesuffix("/manual_time").removesuffix("/process_time")
         case = cases.setdefault(name, {"ns": None, "spread": None, "rate": ""})
         if entry.get("error_occurred"):
             case["rate"] = "fails: " + entry.get("error_message", "")

@@ -49,7 +49,17 @@ std::vector<std::string> scenes() {
   spheres["max_lookback"] = 8;
   spheres["objects"][0]["shape"]["radius"] = 5;
   spheres["objects"][0]["placing"]["centre"] = {0.5, 0.2, 0.3};
-  return {earth.dump(), moving, resting, hole, wormhole, spheres.dump()};
+  const auto smaller = [](const std::string& scene, int width, int height) {
+    json out = json::parse(scene);
+    if (kSanitized) out["camera"]["resolution"] = {width, height};
+    return out.dump();
+  };
+  return {earth.dump(),
+          moving,
+          resting,
+          smaller(hole, 27, 21),
+          smaller(wormhole, 19, 15),
+          smaller(spheres.dump(), 24, 13)};
 }
 
 /// All channels of hits and rays, in full precision, of a picture that is traced in bands of `lines` scan
