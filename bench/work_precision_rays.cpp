@@ -157,7 +157,7 @@ std::vector<std::array<double, 2>> screen_points(std::size_t n, double half_widt
 }
 
 double check_azimuths() {
-  // Carlson's elliptic integrals, shared/reference_cases.json: schw.traveltime.1 and .3
+  // Carlson's elliptic integrals, tests/data/reference_cases.json: schw.traveltime.1 and .3
   return std::max(std::fabs(swept_azimuth(6, 20, 30) - 4.355368863131607),
                   std::fabs(swept_azimuth(15, 100, 50) - 3.022854102310727));
 }

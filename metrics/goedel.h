@@ -1,4 +1,4 @@
-// The Gödel universe in pseudo-Cartesian coordinates (PHYSICS notes in docs/physics.md; Kajari et al. 2004,
+// The Gödel universe in pseudo-Cartesian coordinates (docs/physics.md; Kajari et al. 2004,
 // Grave & Buser 2008). Rotating dust, homogeneous; circles of light; an optical horizon at r = 2a for an
 // observer on the axis. All formulas are regular at r = 0, for n_z -> ±1 and for a -> infinity.
 //

@@ -139,7 +139,7 @@ S GoedelOrbit::Ray<S>::distance(const Complex<S>& q, const S& z, S& stretch) con
 
 inline GoedelOrbit::GoedelOrbit(const LocalFrame<Goedel>& frame, double bounding_radius)
     : metric(frame.metric), ball(bounding_radius) {
-  // The base circle: hyperbolic radius artanh(s/sqrt2), centre to the left of the motion (PHYSICS 2.2).
+  // The base circle: hyperbolic radius artanh(s/sqrt2), centre to the left of the motion (docs/physics.md).
   const auto path = frame.worldline<double>();
   const double a = metric.a, kappa = path.kappa, to_centre = a / std::sqrt(kappa * (1 + kappa));
   centre =

@@ -42,7 +42,7 @@ struct GoedelGuard {
 
   GoedelGuard(const Goedel::Path<S>& path, double bounding_radius) {
     const double a = path.metric->a;
-    // Q = q0 cos psi + w sin psi (PHYSICS 2.2), so |Q|^2 = C + D cos 2 psi + E sin 2 psi.
+    // Q = q0 cos psi + w sin psi (docs/physics.md), so |Q|^2 = C + D cos 2 psi + E sin 2 psi.
     const Complex<S> scaled = S(1 / Goedel::kSqrt2) * (path.p0 * path.nu);
     const Complex<S> w = (S(1.0) / path.kappa) * Complex<S>{scaled.re + path.q0.im, scaled.im - path.q0.re};
     const Complex<S> product = conj(path.q0) * w;

@@ -1,4 +1,4 @@
-// Rotating black holes in Cartesian Kerr-Schild coordinates (Kerr 1963; PHYSICS.md section 15): flat space
+// Rotating black holes in Cartesian Kerr-Schild coordinates (Kerr 1963; docs/physics.md): flat space
 // plus a null congruence,
 //
 //   g_mn = eta_mn - 2 h l_m l_n,  g^mn = eta^mn + 2 h l^m l^n,  h = M r / Sigma,  Sigma = r^2 + a^2 z^2 /

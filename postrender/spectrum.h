@@ -1,7 +1,7 @@
 // What a surface radiates and what of it is seen: the four combinations of effects.
 //
 //   neither      L(lambda)           doppler alone  L(g lambda)
-//   searchlight  g^4 L(lambda)       both           g^5 L(g lambda)   (PHYSICS.md section 9)
+//   searchlight  g^4 L(lambda)       both           g^5 L(g lambda)   (docs/physics.md)
 //
 // g = observed / emitted frequency. The pixel loops are in kernel_spectrum.h.
 #pragma once

@@ -74,7 +74,8 @@ TEST(Sky, DirectionsAreAsGoodAsTheEndingSays) {
 }
 
 TEST(Sky, DeflectionBySchwarzschildIsExact) {
-  // PHYSICS.md (8.1), with M = 1: light from periapsis into the future and into the past, in either chart.
+  // Deflection by elliptic integrals, with M = 1: light from periapsis into the future and into the past, in
+  // either chart.
   struct Case {
     double b, deflection;
   };

@@ -20,27 +20,18 @@ Followed follow(const M& metric, const host::Vec4<double>& event, const host::Ve
                 const Accuracy& accuracy, double limit = 1e300) {
   using namespace host;
   return with_stepper<double>(accuracy.integrator, [&](auto& stepper) {
-    using Stepper = std::remove_reference_t<decltype(stepper)>;
     const HamiltonSystem<M> system{metric};
-    Flight<double> flight;
-    flight.y = to_state(Phase<double>{event, metric.g(event) * k});
-    flight.dy = system.rate(flight.y);
-    flight.h = first_step<Stepper::kRoots>(metric, flight.y, flight.dy, accuracy.rtol);
-    Followed out;
-    while (out.end == 0 && !out.given_up && flight.lambda < limit) {
-      const auto a =
-          attempt(stepper, system, accuracy, flight, next_step(metric, flight, limit - flight.lambda));
-      learn(flight, a, true);
-      if (a.accepted) {
-        flight.y = a.y1, flight.dy = a.dy1;
-        flight.lambda += a.h;
-        out.end = ending(metric, to_phase(flight.y), to_phase(flight.dy), accuracy.rtol);
-      }
-      out.given_up = flight.steps >= kStepLimit || !(a.h > 1e-16 * flight.lambda);
-    }
-    out.at = to_phase(flight.y), out.rate = to_phase(flight.dy);
-    out.lambda = flight.lambda, out.steps = flight.steps, out.error = flight.error;
-    return out;
+    auto traveller = traveller_from(stepper, system, accuracy, event, k);
+    traveller.ends_in_sky = true;
+    traveller.go_to(limit);
+    const Flight<double>& flight = traveller.flight;
+    return Followed{to_phase(flight.y),
+                    to_phase(flight.dy),
+                    traveller.end,
+                    flight.lambda,
+                    flight.steps,
+                    flight.error,
+                    traveller.status == Status::step_limit};
   });
 }
 

@@ -26,7 +26,7 @@ def flow(K, x, eta, steps=2000):  # classical Runge-Kutta: 1e-12 for these field
         k1 = K(x); k2 = K(add(x, h/2, k1)); k3 = K(add(x, h/2, k2)); k4 = K(add(x, h, k3))
         x = [a + h/6 * (p + 2*q + 2*r + s) for a, p, q, r, s in zip(x, k1, k2, k3, k4)]
     return x
-def K4(p):  # PHYSICS.md, section 3, for a = 1
+def K4(p):  # docs/physics.md, for a = 1
     t, x, y, z = p
     s = math.sqrt(1 + (x*x + y*y) / 4)
     return [x / (2**.5 * s), -x*y / (4*s), (1 + (x*x + y*y) / 4 + x*x / 4) / s, 0]

@@ -38,7 +38,7 @@ ray "${flat[@]}" --at 5 --speed 0.5 --paths integrated --json
 expect "near(events(d)[0], (6, 3.5, 3, 2), 1e-14) and abs(d['points'][0]['square'] - .75) < 1e-14"
 
 # Light in the Goedel universe returns in x and y after 2 pi a / sqrt(1 + n_z^2), later by 2 pi a (sqrt2 - 1) for
-# n_z = 0 (PHYSICS.md, section 2.1); it touches 2a half way.
+# n_z = 0 (docs/physics.md); it touches 2a half way.
 ray "${goedel[@]}" --at 3.141592653589793,6.283185307179586 --json
 expect "near(events(d)[1], (2 * math.pi * (2**.5 - 1), 0, 0, 0), 1e-14)"
 expect "abs(math.hypot(*events(d)[0][1:3]) - 2) < 1e-14"

@@ -141,7 +141,7 @@ TEST(Goedel, GeodesicEquationHoldsAlongClosedForms) {
   RecordProperty("worst_relative_residual", std::to_string(worst));
 }
 
-/// Rounding in P, Q is amplified by the isometry to the start (PHYSICS 7.4): e^chi = (p0 + |q0|)^2.
+/// Rounding in P, Q is amplified by the isometry to the start (docs/physics.md): e^chi = (p0 + |q0|)^2.
 double amplification(const Goedel& metric, const Vec4<double>& x) {
   const auto q = metric.to_q(x);
   const double u = std::sqrt(norm2(q));

@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-# Which rooms a room may include, besides itself (DESIGN.md, "The way of the data").
+# Which rooms a room may include, besides itself.
 ALLOWED = {
     "core/base": set(),
     "core/scene": {"core/base"},

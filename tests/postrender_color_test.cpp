@@ -1,4 +1,4 @@
-// Colour and black bodies against the reference cases of PHYSICS.md sections 9 and 11.
+// Colour and black bodies against the reference cases of docs/physics.md.
 #include <cmath>
 
 #include "postrender/black_body.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tools from outside: exit codes, one line a complaint, nothing else; JSON as DESIGN.md fixes it.
+# The tools from outside: exit codes, one line a complaint, nothing else; JSON.
 # Usage: tools_test.sh BIN_DIR SOURCE_DIR
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/checks.sh"
@@ -149,7 +149,7 @@ run 0 bash -c "set +o pipefail; '$info' a.exr --json | head -c 1"
 ray() { local status=$1; shift; run "$status" "$geodesic" --metric goedel --event 0,0,0,0 --direction 1,0,0 --json "$@"; }
 no_ray() { refused 2 "$1" "$geodesic" --metric goedel --event "$2" --direction "$3" --at "$4" "${@:5}"; }
 ray 0 --at 1
-# PHYSICS.md, section 1: the closed form to 16 digits; a few roundings of numbers near 1.
+# docs/physics.md: the closed form to 16 digits; a few roundings of numbers near 1.
 expect "all(abs(a - b) < 4e-15 for a, b in zip(d['points'][0]['event'], (0.8605440030049165, 0.7587754593008128, 0.5862211106967756, 0)))"
 expect "d['metric'] == 'goedel' and set(d['points'][0]) == {'lambda', 'event', 'tangent', 'status'}"
 expect "d['points'][0]['lambda'] == 1 and d['points'][0]['status'] == 'ok' and abs(d['conserved']['E'] - 1) < 1e-14"

@@ -1,4 +1,4 @@
-// Special relativity in a local tetrad: boosts, aberration, Doppler factor (PHYSICS section 9; Weiskopf,
+// Special relativity in a local tetrad: boosts, aberration, Doppler factor (docs/physics.md; Weiskopf,
 // Kraus & Ruder 1999 with g = 1/D; Borchers 2005 eq. 2.5, 2.7 with the misprints of 2.6 and 2.9 corrected).
 #pragma once
 

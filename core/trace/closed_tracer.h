@@ -1,8 +1,8 @@
 // A scene traced along closed-form paths: one object after the other, exact windows and bounds.
 #pragma once
 
+#include "core/trace/closed_search.h"
 #include "core/trace/hamilton.h"
-#include "core/trace/kernel.h"
 #include "core/trace/objects.h"
 
 NULLCONE_KERNEL_BEGIN

@@ -1,8 +1,8 @@
 // Integrated rays under way, as columns, and packs of them.
 #pragma once
 
+#include "core/trace/band.h"
 #include "core/trace/integrate.h"
-#include "core/trace/kernel.h"
 
 NULLCONE_KERNEL_BEGIN
 

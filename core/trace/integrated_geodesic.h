@@ -16,7 +16,9 @@ struct Traveller {
   HamiltonSystem<M> system;
   Accuracy accuracy;
   Flight<double> flight;
+  bool ends_in_sky = false;     ///< else it may be followed as far as one likes towards infinity
   Status status = Status::hit;  ///< changes where it cannot go on
+  double end = 0;               ///< an Ending, where it stands
 
   /// Goes on to lambda = target >= 0.
   void go_to(double target) {
@@ -28,15 +30,26 @@ struct Traveller {
         flight.y = a.y1, flight.dy = a.dy1;
         flight.lambda = a.h == rest ? target : flight.lambda + a.h;
         if (a.h == rest) flight.h = wish;  // cut short by the target, not by its error
-        const double end = ending(system.metric, to_phase(flight.y), to_phase(flight.dy), accuracy.rtol);
-        // Rays may be followed as far as one likes towards infinity, but not into a horizon.
-        if (end != 0 && end < as_scalar<double>(Ending::sky)) status = status_of(end);
+        end = ending(system.metric, to_phase(flight.y), to_phase(flight.dy), accuracy.rtol);
+        if (end != 0 && (ends_in_sky || end < as_scalar<double>(Ending::sky))) status = status_of(end);
       }
       const bool stuck = flight.steps >= kStepLimit || !(a.accepted || a.h > 1e-15 * flight.lambda);
       if (stuck && status == Status::hit) status = Status::step_limit;
     }
   }
 };
+
+/// At the start of the ray through `event` with chart tangent k.
+template <class Stepper, Metric M>
+Traveller<Stepper, M> traveller_from(Stepper& stepper, const HamiltonSystem<M>& system,
+                                     const Accuracy& accuracy, const Vec4<double>& event,
+                                     const Vec4<double>& k) {
+  Flight<double> start;
+  start.y = to_state(Phase<double>{event, system.metric.g(event) * k});
+  start.dy = system.rate(start.y);
+  start.h = first_step<Stepper::kRoots>(system.metric, start.y, start.dy, accuracy.rtol);
+  return {stepper, system, accuracy, start};
+}
 
 /// The geodesic through `event` with chart tangent k, at each affine parameter in the order given. Points
 /// that cannot be reached carry the status that says why, and the last state before.
@@ -50,14 +63,9 @@ std::vector<GeodesicPoint> integrated_geodesic(const M& metric, const Vec4<doubl
   std::sort(order.begin(), order.end(),
             [&](std::size_t i, std::size_t j) { return std::fabs(lambda[i]) < std::fabs(lambda[j]); });
   with_stepper<double>(accuracy.integrator, [&](auto& stepper) {
-    using Stepper = std::remove_reference_t<decltype(stepper)>;
     const HamiltonSystem<M> system{metric};
     for (const double way : {1.0, -1.0}) {  // into the past, lambda grows along the reversed tangent
-      Flight<double> start;
-      start.y = to_state(Phase<double>{event, metric.g(event) * (way * k)});
-      start.dy = system.rate(start.y);
-      start.h = first_step<Stepper::kRoots>(metric, start.y, start.dy, accuracy.rtol);
-      Traveller<Stepper, M> traveller{stepper, system, accuracy, start};
+      auto traveller = traveller_from(stepper, system, accuracy, event, way * k);
       for (const std::size_t i : order) {
         if (std::signbit(lambda[i]) != (way < 0)) continue;
         traveller.go_to(std::fabs(lambda[i]));

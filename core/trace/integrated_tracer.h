@@ -101,7 +101,6 @@ class IntegratedTracer final : public Tracer {
       unfit.reason =
           "moves, and its rigid frame does not reach far; with integrated paths it must be at rest";
       if (!object.placing.worldline.is_static() && body.orbit.farthest < kFar) return false;
-      setting_.moving = setting_.moving || !object.placing.worldline.is_static();
       const double rate = metric.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
       return keep(Marched<LocalMap<M>, LocalBody<M>, S>{{body}, body, shape}, object, number,
                   (observation_[0] - event[0]) / rate, unfit);
@@ -126,13 +125,12 @@ class IntegratedTracer final : public Tracer {
     unfit.reason = fault_of(setting_.system.metric, marched.body, marched.shape, object.shape, observation_);
     if (unfit.reason) return false;
     const double ball = marched.shape.bounding_radius();
+    const double far = object.placing.worldline.is_static() ? 1 : 1e12;  // what moves may be met far away
     for (int n = 0; n < 64; ++n) {  // a little room, for the ball is round only to first order
       const double distance = norm(spatial(marched.body.event(0.0, ball * golden_point(n, 64))));
-      setting_.reach = std::max(setting_.reach, 1.2 * distance + ball);
-      setting_.inside = std::min(setting_.inside, 0.8 * distance - ball);
+      setting_.reach = std::max(setting_.reach, far * (1.2 * distance + ball));
+      setting_.inside = std::max(std::min(setting_.inside, 0.8 * distance - ball), 0.0);
     }
-    if (setting_.moving) setting_.reach = 1e12 * setting_.reach;
-    setting_.inside = std::max(setting_.inside, 0.0);
     MarchObject<M>& made = objects_[setting_.count++];
     made = {number, ball, {}, -1, {marched}};
     if constexpr (std::is_same_v<Map, FixedMap>) {

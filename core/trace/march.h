@@ -19,9 +19,8 @@ struct MarchSetting {
   const MarchObject<M>* objects;
   std::size_t count;
   std::array<std::uint32_t, 2> sky;  ///< numbers of the skies' objects, 0 for none
-  double reach;         ///< coordinates of every object lie within this distance of the origin …
-  double inside;        ///< … and farther than this from it
-  bool moving = false;  ///< not all objects are at rest: they may be met far away
+  double reach;   ///< coordinates of every object lie within this distance of the origin …
+  double inside;  ///< … and farther than this from it
 };
 
 /// How a ray that stands at y ends, as a number of the scalar; `none` if it goes on. A ray may not escape

@@ -48,7 +48,7 @@ struct LocalMap {
 };
 
 /// For the record: a rigid object at rest in a spacetime without isometries, to first order in X: the point Y
-/// of the static tetrad e_a at P, at proper time tau, is the event P + tau e_0 + Y^i e_i (PHYSICS notes,
+/// of the static tetrad e_a at P, at proper time tau, is the event P + tau e_0 + Y^i e_i (docs/physics.md,
 /// section on local objects).
 struct TangentBody {
   Vec4<double> place;
