@@ -39,11 +39,11 @@ Event past_tangent(const Scene& scene, const std::vector<int>& pixel) {
 void trace(const Tracer& tracer, TracedPixel& traced) {
   const auto width = static_cast<std::size_t>(traced.scene.camera.width),
              x = static_cast<std::size_t>(traced.pixel[0]);
-  std::vector<HitRecord> hits(width);
+  Gathering sink;
   std::vector<RayRecord> rays(width);
-  hits.resize(tracer.trace_band(traced.pixel[1], 1, {hits, rays}));
+  tracer.trace_band(traced.pixel[1], 1, {sink, rays});
   traced.record = rays[x];
-  for (const HitRecord& hit : hits)
+  for (const HitRecord& hit : sink.hits)
     if (hit.pixel == x) traced.hits.push_back(hit);
   for (std::size_t i = 0; i < traced.scene.objects.size(); ++i)
     traced.tau_origins.push_back(tracer.tau_origin(i));
@@ -97,6 +97,7 @@ Inquiry inquire_pixel(const GeodesicOptions& options) {
   scene.accuracy = accuracy_of(options, scene.accuracy);
   if (!scene.integrated && scene.observer.frame != ObserverFrame::at_rest)
     throw InputError("--paths", "the observer's frame \"normal\" needs integrated paths");
+  scene.camera.samples = 1;  // the ray through the centre
   traced.pixel = pixel_of(options.pixel, scene.camera);
   const auto tracer = prepare_scene(*out.spacetime, scene, options.scene);
   trace(*tracer, traced);

@@ -28,14 +28,16 @@ json status_counts(const Rays& rays) {
 /// Least and greatest finite value of every floating-point channel.
 json ranges(const Hits& hits) {
   json out = json::object();
-  for_each_channel(hits, kHitChannels, [&](const auto& channel, const auto& column) {
-    float least = INFINITY, most = -INFINITY;
-    for (const auto value : column) {
-      const auto x = static_cast<float>(value);
-      if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
-    }
-    if (least <= most) out[std::string(channel.name)] = {least, most};
-  });
+  for_each_channel(
+      [&](const ChannelInfo& channel, const auto& column) {
+        float least = INFINITY, most = -INFINITY;
+        for (const auto value : column) {
+          const auto x = static_cast<float>(value);
+          if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
+        }
+        if (least <= most) out[std::string(channel.name)] = {least, most};
+      },
+      hits);
   return out;
 }
 
@@ -114,7 +116,7 @@ int report_faults(const std::string& path, bool quiet) {
   if (!std::ifstream(path))
     throw InputError(path, "cannot open the file; expected a nullcone dataset (.exr)");
   try {
-    for (const std::string& fault : verify(read_dataset(path))) faults.push_back(path + ": " + fault);
+    for (const std::string& fault : verify_file(path)) faults.push_back(path + ": " + fault);
   } catch (const InputError& error) {
     faults.emplace_back(error.what());
   }

@@ -8,18 +8,19 @@
 #include "apps/preview.h"
 #include "apps/scene_text.h"
 #include "apps/tool.h"
+#include "apps/trace_job.h"
 #include "core/base/error.h"
-#include "core/trace/trace_scene.h"
+#include "core/record/memory.h"
 #include "metrics/registry.h"
 
 namespace {
 
 using namespace nullcone;
 
-/// Set by SIGINT and SIGTERM: tracing then ends after the bands in flight, and nothing is left behind. What
-/// is already being written is finished. A second signal ends the program at once.
-std::atomic<bool> stop_wanted = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
+/// Set by SIGINT and SIGTERM: tracing then ends after the bands in flight. What is already being written is
+/// finished. A second signal ends the program at once.
+StopFlag stop_wanted = false;
+static_assert(StopFlag::is_always_lock_free);
 
 void stop_when_asked() {
   struct sigaction action {};
@@ -38,14 +39,13 @@ class Talk {
   explicit Talk(bool quiet) : quiet_(quiet) {}
 
   Progress progress() {
+    if (quiet_) return {};
     return [this](std::size_t done, std::size_t all) {
-      if (stop_wanted) throw Interrupted();
-      if (quiet_) return;
       const double now = seconds();
       double last = last_.load();
       if (now - last < 0.2 || !last_.compare_exchange_strong(last, now)) return;
       const double rate = static_cast<double>(done) / now, left = static_cast<double>(all - done) / rate;
-      std::fprintf(stderr, "\r%3.0f %%, %.2f M rays/s, %.0f s left   ",
+      std::fprintf(stderr, "\r%3.0f %%, %.2f M pixels/s, %.0f s left   ",
                    100.0 * static_cast<double>(done) / static_cast<double>(all), 1e-6 * rate, left);
     };
   }
@@ -53,59 +53,98 @@ class Talk {
     if (quiet_) return {};
     return [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
-  void summary(const Dataset& dataset, const std::string& path) const {
+  void resumed(const std::string& path, int lines) const {
+    if (!quiet_) std::fprintf(stderr, "%s: going on after %d scan lines\n", path.c_str(), lines);
+  }
+  void summary(const Manifest& manifest, std::size_t hits, const std::string& path) const {
     if (quiet_) return;
     std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(),
-                 dataset.pixels(), dataset.hits.count(), seconds(), dataset.manifest.core_seconds,
-                 dataset.manifest.isa.c_str());
+                 manifest.rays(), hits, seconds(), manifest.core_seconds, manifest.isa.c_str());
   }
-
- private:
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
+ private:
   bool quiet_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::atomic<double> last_ = 0;
 };
 
-/// Fails before the work, not after it, where nothing can be written; removes what killed runs left there.
-void check_writable(const std::string& path) {
-  const bool fits = path.size() > 4 && path.ends_with(".exr");
-  if (!fits) throw InputError(path, "expected a name that ends in .exr");
-  if (std::filesystem::is_directory(path)) throw InputError(path, "is a folder; expected the name of a file");
-  check_place(path);
+struct Options {
+  ToolOptions common;
+  std::string scene, from, output, isa, shard;
+  bool resume = false;
+};
+
+/// The bands of a scene that are not there yet; the exit status.
+int trace(const Options& options, const Scene& scene, const Tracer& tracer, const Manifest& manifest,
+          Talk& talk) {
+  const std::string partial = partial_path(options.output);
+  DatasetWriter writer(options.output, manifest);
+  Manifest before;
+  if (options.resume && std::filesystem::exists(partial)) {
+    before = resume_from(partial, writer);
+    talk.resumed(partial, writer.lines());
+  }
+  std::size_t hits = 0;
+  const Lines lines = {manifest.first_line + writer.lines(), manifest.first_line + manifest.lines};
+  const double core_seconds =
+      before.core_seconds + trace_bands(
+                                tracer, scene, lines, options.common.threads, talk.progress(),
+                                [&](const Band& band) {
+                                  writer.add(band, make_preview(band.hits));
+                                  hits += band.hits.count();
+                                },
+                                &stop_wanted);
+  if (writer.lines() == manifest.lines) {
+    writer.finish(core_seconds, before.seconds + talk.seconds());
+    std::filesystem::remove(partial);
+    talk.summary(writer.manifest(), hits, options.output);
+    return 0;
+  }
+  writer.finish_partial(partial, core_seconds, before.seconds + talk.seconds());
+  std::fprintf(stderr, "%snullcone-trace: interrupted; %s holds %d of %d scan lines, go on with --resume\n",
+               options.common.quiet ? "" : "\n", partial.c_str(), writer.manifest().traced_lines,
+               manifest.lines);
+  return 3;
+}
+
+int work(Options& options) {
+  check_output_name(options.output);
+  if (options.scene.empty() == options.from.empty())
+    throw InputError("command line", "expected either a SCENE or --from DATA.exr");
+  const std::string& source = options.from.empty() ? options.scene : options.from;
+  if (!options.from.empty() && !looks_like_exr(source)) read_manifest(source);  // says what is wrong
+  Scene scene = read_scene(scene_text(source), source, metric_descriptions());
+  const Spacetime& spacetime = find_spacetime(scene.metric, options.isa);
+  const int threads = options.common.threads;
+  check_memory(scene.camera, scene.records.channels, bands_in_flight(threads), available_memory(), source);
+  Talk talk(options.common.quiet);
+  const auto tracer = prepare_scene(spacetime, scene, source);
+  if (const Note note = talk.notes()) note_distortions(*tracer, scene, source, note);
+  Manifest manifest = describe(spacetime, scene, *tracer);
+  if (!options.shard.empty()) {
+    const Lines lines = lines_of(read_shard(options.shard), manifest.height);
+    manifest.first_line = lines.first;
+    manifest.lines = manifest.traced_lines = lines.end - lines.first;
+  }
+  return trace(options, scene, *tracer, manifest, talk);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Traces light backwards through a scene and records what every ray meets.", "nullcone-trace");
-  std::string scene_path, output, isa;
-  ToolOptions options;
-  app.add_option("SCENE", scene_path, "Scene (.json), or a dataset (.exr) to trace again from its header")
-      ->required();
-  app.add_option("-o,--output", output, "Dataset to write (.exr)")->required();
-  app.add_option("--isa", isa, "Instruction set of the kernel");
-  add_common_options(app, options);
+  Options options;
+  app.add_option("SCENE", options.scene, "Scene (.json), or a dataset (.exr) to trace again from its header");
+  app.add_option("--from", options.from, "Dataset (.exr) to trace again from its header");
+  app.add_option("-o,--output", options.output, "Dataset to write (.exr)")->required();
+  app.add_option("--isa", options.isa, "Instruction set of the kernel");
+  app.add_option("--shard", options.shard, "i/n: only the i-th of n runs of scan lines (see nullcone-merge)");
+  app.add_flag("--resume", options.resume, "Go on where an interrupted run of the same scene stopped");
+  add_common_options(app, options.common);
 
   stop_when_asked();
-  return run_tool(app, argc, argv, [&] {
-    check_writable(output);
-    const auto metrics = metric_descriptions();
-    const Scene scene = read_scene(scene_text(scene_path), scene_path, metrics);
-    const Spacetime& spacetime = find_spacetime(scene.metric, isa);
-    Talk talk(options.quiet);
-    try {
-      const Dataset dataset =
-          trace_scene(spacetime, scene, scene_path, options.threads, talk.progress(), talk.notes());
-      write_dataset(output, dataset, make_preview(dataset));
-      talk.summary(dataset, output);
-    } catch (const Interrupted&) {
-      std::fprintf(stderr, "%snullcone-trace: interrupted, nothing is written\n", options.quiet ? "" : "\n");
-      return 3;
-    }
-    return 0;
-  });
+  return run_tool(app, argc, argv, [&] { return work(options); });
 }

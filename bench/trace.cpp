@@ -41,17 +41,19 @@ void trace(benchmark::State& state, const std::string& text, std::string_view is
   Scene scene = read_scene(text, "benchmark", metrics);
   const auto tracer = prepare_scene(find_spacetime(scene.metric, isa), scene, "benchmark");
   const auto width = static_cast<std::size_t>(scene.camera.width);
-  std::vector<HitRecord> hits(width * kBandLines);
-  std::vector<RayRecord> rays(hits.size());
-  double seconds = 0;
+  std::vector<RayRecord> rays(width * kBandLines);
   for ([[maybe_unused]] auto _ : state) {
     if (threads > 1) {
-      benchmark::DoNotOptimize(trace_bands(*tracer, scene.camera, threads, {}, seconds));
+      benchmark::DoNotOptimize(
+          trace_bands(*tracer, scene, {0, scene.camera.height}, threads, {}, [](Band&&) {}));
       continue;
     }
-    for (int line = 0; line < scene.camera.height; line += kBandLines)
-      benchmark::DoNotOptimize(
-          tracer->trace_band(line, std::min(kBandLines, scene.camera.height - line), {hits, rays}));
+    for (int line = 0; line < scene.camera.height; line += kBandLines) {
+      Gathering sink;
+      sink.hits.reserve(rays.size());
+      tracer->trace_band(line, std::min(kBandLines, scene.camera.height - line), {sink, rays});
+      benchmark::DoNotOptimize(sink.hits.data());
+    }
   }
   state.SetItemsProcessed(state.iterations() * scene.camera.width * scene.camera.height);
 }

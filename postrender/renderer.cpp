@@ -20,15 +20,17 @@ constexpr int kBandRows = 16;
 void check_records(const Dataset& dataset) {
   const Hits& hits = dataset.hits;
   const auto refuse = [](const std::string& message) { throw InputError("dataset", message); };
-  if (dataset.manifest.width < 1 || dataset.manifest.height < 1) refuse("an empty picture");
+  if (dataset.manifest.width < 1 || dataset.manifest.lines < 1) refuse("an empty picture");
   if (hits.offset.size() != dataset.pixels() + 1 || hits.offset.front() != 0)
     refuse("expected one count of crossings a pixel");
   if (!std::ranges::is_sorted(hits.offset)) refuse("the counts of crossings run backwards");
-  for_each_channel(hits, kHitChannels, [&](const auto& channel, const auto& column) {
-    if (column.size() != hits.count())
-      refuse("channel " + std::string(channel.name) + " holds " + std::to_string(column.size()) + " of " +
-             std::to_string(hits.count()) + " crossings");
-  });
+  for_each_channel(
+      [&](const ChannelInfo& channel, const auto& column) {
+        if (column.size() != hits.count())
+          refuse("channel " + std::string(channel.name) + " holds " + std::to_string(column.size()) + " of " +
+                 std::to_string(hits.count()) + " crossings");
+      },
+      hits);
   const std::size_t objects = dataset.manifest.objects.size();
   for (const std::uint32_t id : hits.id)
     if (id < 1 || id > objects)
@@ -95,7 +97,7 @@ Shading Renderer::prepare(const Look& look) {
 /// Calls work(row) for all rows, with one worker made by `make_worker` a thread.
 template <class MakeWorker>
 void Renderer::for_each_row(MakeWorker&& make_worker) const {
-  const int rows = dataset_.manifest.height, bands = (rows + kBandRows - 1) / kBandRows;
+  const int rows = dataset_.manifest.lines, bands = (rows + kBandRows - 1) / kBandRows;
   tbb::enumerable_thread_specific<decltype(make_worker())> workers(make_worker);
   tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const auto& range) {
     auto& work = workers.local();
@@ -152,7 +154,7 @@ Image Renderer::render(const Look& look) {
 void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   // Step 1: textures and tables.
   Shading shading = prepare(look);
-  set_size(image, dataset_.manifest.width, dataset_.manifest.height, parts);
+  set_size(image, dataset_.manifest.width, dataset_.manifest.lines, parts);
   // Step 2: shade line by line, unless only the development changed. Radiance is kept where the white must be
   // found in it, and from the second picture of the same shading on.
   const bool physical = has_physical(shading),

@@ -79,7 +79,7 @@ bool has_physical(const Shading& shading) {
 std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset) {
   const auto width = static_cast<std::size_t>(dataset.manifest.width);
   std::vector<std::uint8_t> out;
-  for (std::size_t line = 0; line < static_cast<std::size_t>(dataset.manifest.height); ++line) {
+  for (std::size_t line = 0; line < static_cast<std::size_t>(dataset.manifest.lines); ++line) {
     const std::uint64_t* offset = dataset.hits.offset.data() + line * width;
     std::uint64_t difference = 0;
     for (std::size_t i = 0; i <= width; ++i) difference |= offset[i] - offset[0] - i;
@@ -99,7 +99,7 @@ LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one
       shading_(shading),
       kernel_(kernel),
       width_(static_cast<std::size_t>(dataset.manifest.width)),
-      height_(static_cast<std::size_t>(dataset.manifest.height)),
+      height_(static_cast<std::size_t>(dataset.manifest.lines)),
       appearance_(width_),
       transmittance_(width_),
       weight_(width_) {

@@ -18,37 +18,47 @@ namespace nullcone::test {
 
 namespace fs = std::filesystem;
 
-inline void rehash(Dataset& dataset) {
-  dataset.manifest.hits_sha256 = payload_sha256(dataset.hits);
-  dataset.manifest.rays_sha256 = payload_sha256(dataset.rays);
+/// A value in a channel's range that only exact storage keeps.
+inline float odd_value(const ChannelInfo& channel, std::size_t n) {
+  const std::array within = {1e-45F, 0.1F, 0.99999994F, 1.0F, 0.0F, 0.3F},
+                   positive = {1e-45F, 3.4e38F, 0.1F, INFINITY, 0.0F, 7.7F},
+                   any = {1e-45F, -0.0F, 3.4e38F, 0.1F, -INFINITY, -1.7F};
+  if (channel.range.ends_with(" to 1")) return within[n % 6];
+  return channel.range == "from 0" ? positive[n % 6] : any[n % 6];
 }
 
 /// 6 x 4 pixels with 0 to 3 crossings each (or none), and values that only exact storage keeps.
-inline Dataset sample(bool with_hits = true) {
+inline Dataset sample(bool with_hits = true, ChannelSet channels = kDefaultChannels) {
   Dataset out;
   Manifest& m = out.manifest;
-  m.width = 6, m.height = 4;
+  m.set_size(6, 4);
+  m.setting = R"({"camera":{"type":"sphere"}})";
+  out.hits.channels = m.channels = channels;
   m.scene = R"({"metric":{"name":"minkowski"}})";
   m.scene_sha256 = sha256(m.scene);
   m.metric = "minkowski";
   m.objects = {{"earth", 0.1}, {"moon", -1e15}};
   m.version = "test 1", m.isa = "sse2", m.host = std::string(64, 'h'), m.core_seconds = 0.25;
-  const float odd[] = {1e-45F, -0.0F, 3.4e38F, 0.1F, -INFINITY, NAN};
+  m.seconds = 0.125;
   for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
     for (std::uint32_t k = 0; with_hits && k < pixel * 7 % 4; ++k) {
-      for_each_channel(out.hits, kHitChannels, [&](const auto& channel, auto& column) {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(column)>, std::vector<float>>)
-          column.push_back(odd[(pixel + k + channel.name.size()) % 6]);
-        else
-          column.push_back(channel.name == "id" ? 1 + k % 2 : 0xffffffffU - pixel);
-      });
+      for_each_channel(
+          [&](const ChannelInfo& channel, auto& column) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(column)>, std::vector<float>>)
+              column.push_back(odd_value(channel, pixel + k + channel.name.size()));
+            else
+              column.push_back(channel.name == "id"       ? 1 + k % 2
+                               : channel.name == "sample" ? 0
+                                                          : 0xffffffffU - pixel);
+          },
+          out.hits);
       out.hits.Z.back() = k < 2 ? static_cast<float>(k) + 0.1F : INFINITY;
     }
     out.hits.offset.push_back(out.hits.Z.size());
     out.rays.status.push_back(pixel % 7), out.rays.steps.push_back(0xffffff00U + pixel);
-    out.rays.error.push_back(odd[pixel % 6]), out.rays.drift.push_back(1e-7F);
+    out.rays.error.push_back(odd_value(kRayChannelInfo[2], pixel)), out.rays.drift.push_back(1e-7F);
   }
-  rehash(out);
+  fingerprint(out);
   return out;
 }
 

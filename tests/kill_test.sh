@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs of nullcone-trace, killed at random moments: under the output's name stands nothing, the previous whole dataset or
-# a new whole one; SIGTERM and SIGINT leave nothing else behind; what SIGKILL leaves, the next run removes.
+# a new whole one; SIGTERM and SIGINT leave a whole partial file beside it; what SIGKILL leaves, the next run removes.
 # Usage: kill_test.sh BIN_DIR SOURCE_DIR   (NULLCONE_KILLS: how many kills a signal, default 15)
 set -u
 bin=$(cd "$1" && pwd) || exit 2
@@ -42,6 +42,10 @@ judge() {
     TERM:143 | INT:130) ;;  # before main could ask for the signal
     *) fault "$1: exit status $2: $(head -c 300 err)" ;;
   esac
+  if [ "$2" = 3 ]; then  # what it has is kept
+    "$bin/nullcone-info" out/a.partial.exr --verify --quiet >why 2>&1 || fault "$1: no whole partial file: $(head -c 300 why)"
+    rm -f out/a.partial.exr
+  fi
   [ "$1" = KILL ] || [ "$2" -ge 128 ] || [ "$(parts)" -eq 0 ] || fault "$1: parts are left: $(ls out)"
   [ "$(parts)" -le 1 ] || fault "$1: parts of earlier runs are still there: $(ls out)"
   ends[$1:$2]=$((${ends[$1:$2]:-0} + 1))

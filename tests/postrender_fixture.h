@@ -30,8 +30,7 @@ struct TestHit {
 inline Dataset make_dataset(int width, int height, const std::vector<ObjectEntry>& objects,
                             const std::function<std::vector<TestHit>(int, int)>& at) {
   Dataset out;
-  out.manifest.width = width;
-  out.manifest.height = height;
+  out.manifest.set_size(width, height);
   out.manifest.objects = objects;
   Hits& hits = out.hits;
   for (int row = 0; row < height; ++row)

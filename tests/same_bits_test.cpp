@@ -72,10 +72,10 @@ std::vector<double> numbers(const std::string& text, std::string_view isa, int l
   const auto width = static_cast<std::size_t>(scene.camera.width);
   for (int line = 0; line < scene.camera.height; line += lines) {
     const int count = std::min(lines, scene.camera.height - line);
-    std::vector<HitRecord> hits(width * static_cast<std::size_t>(count));
-    std::vector<RayRecord> rays(hits.size());
-    hits.resize(tracer->trace_band(line, count, {hits, rays}));
-    for (const HitRecord& h : hits) {
+    Gathering sink;
+    std::vector<RayRecord> rays(width * static_cast<std::size_t>(count));
+    tracer->trace_band(line, count, {sink, rays});
+    for (const HitRecord& h : sink.hits) {
       const auto pixel = static_cast<double>(h.pixel + static_cast<std::size_t>(line) * width);
       of_hits.insert(of_hits.end(), {pixel, static_cast<double>(h.id), static_cast<double>(h.order), h.Z, h.u,
                                      h.v, h.shift, h.t, h.tau, h.mu});

@@ -131,7 +131,7 @@ bytes_[at] ^= 1
 open("flipped.exr", "wb").write(bytes_)
 PYTHON
 run 1 "$info" flipped.exr --verify
-{ [ "$(wc -l <out)" -eq 1 ] && grep -q 'flipped.exr: hits: SHA-256' out; } || fault "--verify names one fault a line"
+{ [ "$(wc -l <out)" -eq 2 ] && grep -q 'flipped.exr: hits: SHA-256' out && grep -q 'flipped.exr: file: SHA-256' out; } || fault "--verify names one fault a line"
 # A header with a text that is nested too deep to print.
 python3 - <<'PYTHON'
 data = open("a.exr", "rb").read()

@@ -8,16 +8,28 @@
 
 namespace nullcone {
 
+/// Scan lines a band: the unit of tracing, of writing, of fingerprints and of memory.
+inline constexpr int kBandLines = 16;
+
 enum class CameraType { perspective, panorama };
 
 /// Plain data; angles in radians. A full sphere is a panorama of 2 pi x pi.
 struct Camera {
   CameraType type = CameraType::panorama;
   int width = 0, height = 0;
+  int samples = 1;  ///< rays a pixel, along each side
   double fov_horizontal = 0, fov_vertical = 0;
   /// Look direction of the centre, direction to the left edge, and up; orthonormal, in the camera's tetrad.
   std::array<double, 3> forward = {1, 0, 0}, left = {0, 1, 0}, up = {0, 0, 1};
 };
+
+/// The camera whose pixels are the samples of `camera`.
+inline Camera sample_camera(Camera camera) {
+  camera.width *= camera.samples;
+  camera.height *= camera.samples;
+  camera.samples = 1;
+  return camera;
+}
 
 }  // namespace nullcone
 

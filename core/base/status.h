@@ -16,8 +16,9 @@ enum class Status : std::uint32_t {
   lookback_reached = 4,  ///< met nothing within the scene's max_lookback
   step_limit = 5,        ///< the search was given up: doubtful pixel
   not_finite = 6,        ///< numbers broke down: doubtful pixel
+  not_traced = 7,        ///< tracing was interrupted before
 };
-inline constexpr std::array<std::string_view, 7> kStatusNames = {
-    "hit", "sky", "captured", "left_chart", "lookback_reached", "step_limit", "not_finite"};
+inline constexpr std::array<std::string_view, 8> kStatusNames = {
+    "hit", "sky", "captured", "left_chart", "lookback_reached", "step_limit", "not_finite", "not_traced"};
 
 }  // namespace nullcone

@@ -3,11 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <span>
-
-#include "core/base/json.h"
-#include "core/base/sha256.h"
 
 namespace nullcone {
 
@@ -16,74 +11,60 @@ static_assert(std::endian::native == std::endian::little,
 
 namespace {
 
-void check_columns(const Dataset& dataset, std::vector<std::string>& faults) {
-  const std::size_t pixels = dataset.pixels(), count = dataset.hits.count();
-  if (dataset.hits.offset.size() != pixels + 1)
-    faults.push_back("hits: the number of pixels is not width x height");
-  if (!std::is_sorted(dataset.hits.offset.begin(), dataset.hits.offset.end()))
-    faults.push_back("hits: the counts a pixel are not counts");
-  for_each_channel(dataset.hits, kHitChannels, [&](const auto& channel, const auto& column) {
-    if (column.size() != count)
-      faults.push_back("hits: channel " + std::string(channel.name) + " has a wrong length");
-  });
-  for_each_channel(dataset.rays, kRayChannels, [&](const auto& channel, const auto& column) {
-    if (column.size() != pixels)
-      faults.push_back("rays: channel " + std::string(channel.name) + " has a wrong length");
-  });
+template <class T>
+std::vector<T> part(const std::vector<T>& column, std::size_t first, std::size_t count) {
+  const auto begin = column.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
-void check_values(const Dataset& dataset, std::vector<std::string>& faults) {
-  const Hits& hits = dataset.hits;
-  for (const std::uint32_t id : hits.id)
-    if (id < 1 || id > dataset.manifest.objects.size()) {
-      faults.push_back("hits: an id names no object of the manifest");
-      break;
-    }
-  for (std::size_t i = 0; i + 1 < hits.offset.size(); ++i)
-    for (std::uint64_t k = hits.offset[i] + 1; k < hits.offset[i + 1]; ++k)
-      if (!(hits.Z[k - 1] <= hits.Z[k])) {
-        faults.push_back("hits: the crossings of pixel " + std::to_string(i) + " are not sorted by Z");
-        return;
-      }
-}
-
-void check_scene(const Manifest& manifest, std::vector<std::string>& faults) {
-  try {
-    nlohmann::json scene = parse_json(manifest.scene, "manifest: scene");
-    scene.erase("look");
-    if (sha256(canonical_json(scene)) != manifest.scene_sha256)
-      faults.push_back("manifest: SHA-256 of the scene differs from the one beside it");
-  } catch (const std::exception& error) {
-    faults.emplace_back(error.what());
-  }
-}
+constexpr auto kExtend = [](const ChannelInfo&, auto& to, const auto& from) {
+  to.insert(to.end(), from.begin(), from.end());
+};
 
 }  // namespace
 
-std::string payload_sha256(const Hits& hits) {
-  Sha256 hash;
-  hash.add(std::span(hits.offset));
-  for_each_channel(hits, kHitChannels, [&](const auto&, const auto& column) { hash.add(std::span(column)); });
-  return hash.digits();
+Band Dataset::band(int first, int count) const {
+  const std::size_t width = static_cast<std::size_t>(manifest.width),
+                    begin = width * static_cast<std::size_t>(first);
+  const std::size_t samples =
+      static_cast<std::size_t>(manifest.samples) * static_cast<std::size_t>(manifest.samples);
+  Band out;
+  out.hits.channels = hits.channels;
+  out.hits.offset = part(hits.offset, begin, width * static_cast<std::size_t>(count) + 1);
+  const std::uint64_t at = out.hits.offset.front(), crossings = out.hits.offset.back() - at;
+  for (std::uint64_t& offset : out.hits.offset) offset -= at;
+  for_each_channel([&](const ChannelInfo&, auto& to, const auto& from) { to = part(from, at, crossings); },
+                   out.hits, hits);
+  for_each_channel(
+      [&](const ChannelInfo&, auto& to, const auto& from) {
+        to = part(from, begin * samples, width * static_cast<std::size_t>(count) * samples);
+      },
+      out.rays, rays);
+  return out;
 }
 
-std::string payload_sha256(const Rays& rays) {
-  Sha256 hash;
-  for_each_channel(rays, kRayChannels, [&](const auto&, const auto& column) { hash.add(std::span(column)); });
-  return hash.digits();
+void Dataset::append(const Band& band) {
+  const std::uint64_t before = hits.count();
+  for (std::size_t i = 1; i < band.hits.offset.size(); ++i)
+    hits.offset.push_back(before + band.hits.offset[i]);
+  for_each_channel(kExtend, hits, band.hits);
+  for_each_channel(kExtend, rays, band.rays);
 }
 
-std::vector<std::string> verify(const Dataset& dataset) {
-  std::vector<std::string> faults;
-  check_columns(dataset, faults);
-  if (!faults.empty()) return faults;
-  check_values(dataset, faults);
-  check_scene(dataset.manifest, faults);
-  if (payload_sha256(dataset.hits) != dataset.manifest.hits_sha256)
-    faults.push_back("hits: SHA-256 differs from the one in the header");
-  if (payload_sha256(dataset.rays) != dataset.manifest.rays_sha256)
-    faults.push_back("rays: SHA-256 differs from the one in the header");
-  return faults;
+void PayloadHash::add(const Band& band) {
+  std::vector<std::uint32_t> counts(band.hits.offset.size() - 1);
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    counts[i] = static_cast<std::uint32_t>(band.hits.offset[i + 1] - band.hits.offset[i]);
+  hits_.add(std::span<const std::uint32_t>(counts));
+  for_each_channel([&](const ChannelInfo&, const auto& column) { hits_.add(std::span(column)); }, band.hits);
+  for_each_channel([&](const ChannelInfo&, const auto& column) { rays_.add(std::span(column)); }, band.rays);
+}
+
+void fingerprint(Dataset& dataset) {
+  PayloadHash hash;
+  for_each_band(dataset.manifest.lines, [&](int first, int lines) { hash.add(dataset.band(first, lines)); });
+  dataset.manifest.hits_sha256 = hash.hits();
+  dataset.manifest.rays_sha256 = hash.rays();
 }
 
 }  // namespace nullcone

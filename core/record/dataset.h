@@ -1,10 +1,13 @@
 // A dataset: records and the manifest that says how they came to be.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/base/camera.h"
+#include "core/base/sha256.h"
 #include "core/record/hits.h"
 
 namespace nullcone {
@@ -16,17 +19,48 @@ struct ObjectEntry {
   bool operator==(const ObjectEntry&) const = default;
 };
 
+inline constexpr int kNewestFormat = 2;
+
 /// How a dataset came to be; stored as JSON in the header of the file.
 struct Manifest {
-  int format = 1;  ///< version of the file format
-  int width = 0, height = 0;
+  int format = kNewestFormat;     ///< version of the file format
+  int width = 0, height = 0;      ///< of the whole picture, in pixels
+  int first_line = 0, lines = 0;  ///< the window of the picture that is here: scan lines, all of each
+  int traced_lines = 0;           ///< of the window; fewer than `lines` where tracing was interrupted
+  int samples = 1;                ///< rays a pixel, along each side
+  ChannelSet channels = kDefaultChannels;
   std::string scene;         ///< canonical JSON of the whole scene, its look included
   std::string scene_sha256;  ///< of the canonical scene without its look
   std::string metric;
+  std::string
+      setting;  ///< JSON: metric_parameters, camera, observation, paths, as they were with all defaults
   std::vector<ObjectEntry> objects;
   std::string version, isa, host;
-  double core_seconds = 0;
-  std::string hits_sha256, rays_sha256;  ///< of all channels, in the order of hits.h
+  double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
+  std::string hits_sha256, rays_sha256;  ///< see PayloadHash
+
+  /// A whole picture.
+  void set_size(int w, int h) {
+    width = w;
+    height = lines = traced_lines = h;
+  }
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(lines); }
+  std::size_t rays() const {
+    return pixels() * static_cast<std::size_t>(samples) * static_cast<std::size_t>(samples);
+  }
+  bool partial() const { return traced_lines < lines; }
+};
+
+/// The bands of a window, in order: f(first, lines), where `first` counts within the window.
+template <class F>
+void for_each_band(int lines, F&& f) {
+  for (int first = 0; first < lines; first += kBandLines) f(first, std::min(kBandLines, lines - first));
+}
+
+/// Records of some scan lines; `hits.offset` begins at 0.
+struct Band {
+  Hits hits;
+  Rays rays;
 };
 
 struct Dataset {
@@ -34,16 +68,49 @@ struct Dataset {
   Hits hits;
   Rays rays;
 
-  std::size_t pixels() const {
-    return static_cast<std::size_t>(manifest.width) * static_cast<std::size_t>(manifest.height);
-  }
+  std::size_t pixels() const { return manifest.pixels(); }
+  /// Scan lines `first` to `first + lines` of the window.
+  Band band(int first, int lines) const;
+  /// Puts a band behind those that are there.
+  void append(const Band& band);
 };
 
-/// SHA-256 over the per-pixel counts and all columns (little endian), in the order of the table of channels.
-std::string payload_sha256(const Hits& hits);
-std::string payload_sha256(const Rays& rays);
+/// Fingerprints of records: SHA-256 over all bands of kBandLines scan lines from the top; of each, the counts
+/// of crossings a pixel (uint32) and then the channels in the order of channels.h, little endian. So they can
+/// be made band by band, and those of a picture do not depend on how it was cut.
+class PayloadHash {
+ public:
+  void add(const Band& band);
+  std::string hits() { return hits_.digits(); }
+  std::string rays() { return rays_.digits(); }
 
-/// Faults of a dataset, one line each; empty when counts, channels and hashes agree.
+ private:
+  Sha256 hits_, rays_;
+};
+
+/// Sets the fingerprints in the manifest.
+void fingerprint(Dataset& dataset);
+
+/// Looks for faults, band by band; each is one line.
+class Verifier {
+ public:
+  explicit Verifier(const Manifest& manifest);
+  void add(const Band& band);
+  /// After the last band: all faults, empty when counts, channels, values and fingerprints agree.
+  std::vector<std::string> faults();
+
+ private:
+  void check_values(const Band& band);
+  void once(const std::string& fault);
+
+  const Manifest& manifest_;
+  PayloadHash hash_;
+  Dataset old_;  ///< all of it, for format 1
+  int lines_ = 0;
+  std::vector<std::string> faults_;
+};
+
+/// Faults of a dataset in memory.
 std::vector<std::string> verify(const Dataset& dataset);
 
 }  // namespace nullcone

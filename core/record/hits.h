@@ -1,71 +1,68 @@
-// Records: what every ray met, as a structure of arrays, and the one table that names each channel.
+// Records: what every ray met, as a structure of arrays, and where each channel stands in it.
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
-#include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "core/base/channels.h"
 #include "core/base/status.h"
 
 namespace nullcone {
 
 /// All crossings of all pixels, pixel by pixel (row by row from the top left), nearest first.
-/// The crossings of pixel i stand at offset[i] … offset[i + 1] − 1 of every column.
+/// The crossings of pixel i stand at offset[i] … offset[i + 1] − 1 of every column that is recorded; the
+/// others are empty.
 struct Hits {
+  ChannelSet channels = kDefaultChannels;
   std::vector<std::uint64_t> offset = {0};  ///< pixels + 1 entries
   std::vector<float> Z, A;
-  std::vector<std::uint32_t> id, order;
+  std::vector<std::uint32_t> id, order, sample;
   std::vector<float> u, v, shift, t, tau, mu;
+  std::array<std::vector<float>, 4> duv;      ///< du/dx, dv/dx, du/dy, dv/dy
+  std::array<std::vector<float>, 3> N, K, P;  ///< normal, direction of emission, place
 
   std::size_t count() const { return offset.empty() ? 0 : offset.back(); }
 };
 
-/// One entry a pixel.
+/// One entry a ray: a pixel, or a sample of it; row by row from the top left.
 struct Rays {
   std::vector<std::uint32_t> status, steps;
   std::vector<float> error, drift;
 };
 
-/// A channel: its name in files, its meaning, and where it stands in memory.
-template <class Column>
-struct Channel {
-  std::string_view name;
-  std::string_view meaning;
-  Column column;  ///< pointer to member
-};
+/// All columns, in the order of kHitChannelInfo or kRayChannelInfo.
+template <class Table>
+requires std::same_as<std::remove_const_t<Table>, Hits>
+auto columns(Table& h) {
+  return std::tie(h.Z, h.A, h.id, h.order, h.sample, h.u, h.v, h.shift, h.t, h.tau, h.mu, h.duv[0], h.duv[1],
+                  h.duv[2], h.duv[3], h.N[0], h.N[1], h.N[2], h.K[0], h.K[1], h.K[2], h.P[0], h.P[1], h.P[2]);
+}
+template <class Table>
+requires std::same_as<std::remove_const_t<Table>, Rays>
+auto columns(Table& rays) { return std::tie(rays.status, rays.steps, rays.error, rays.drift); }
 
-template <class Column>
-Channel(std::string_view, std::string_view, Column) -> Channel<Column>;
+inline const ChannelInfo& info_of(const Hits&, std::size_t channel) { return kHitChannelInfo[channel]; }
+inline const ChannelInfo& info_of(const Rays&, std::size_t channel) { return kRayChannelInfo[channel]; }
+inline bool has_channel(const Hits& hits, std::size_t channel) { return hits.channels.has(channel); }
+inline bool has_channel(const Rays&, std::size_t) { return true; }
 
-/// The channels of the deep part `hits`, in the order of hashes and listings.
-inline constexpr std::tuple kHitChannels = {
-    Channel{"Z", "affine distance along the ray, k.u = 1 at the camera (scene units)", &Hits::Z},
-    Channel{"A", "opacity, 0 to 1", &Hits::A},
-    Channel{"id", "number of the object in the manifest, from 1", &Hits::id},
-    Channel{"order", "caustics passed: rank of the image; odd images are mirrored", &Hits::order},
-    Channel{"uv.U", "texture coordinate, 0 to 1", &Hits::u},
-    Channel{"uv.V", "texture coordinate, 0 to 1, upwards", &Hits::v},
-    Channel{"shift", "frequency ratio g = observed / emitted; above 1 is blue", &Hits::shift},
-    Channel{"t", "coordinate time of emission minus that of observation (scene units)", &Hits::t},
-    Channel{"tau", "the object's proper time minus tau_origin in the manifest (scene units)", &Hits::tau},
-    Channel{"mu", "cosine of the emission angle from the outward normal, in the surface's rest frame",
-            &Hits::mu},
-};
-
-/// The channels of the flat part `rays`.
-inline constexpr std::tuple kRayChannels = {
-    Channel{"status", "how the ray ended (see Status)", &Rays::status},
-    Channel{"steps", "evaluations of the path", &Rays::steps},
-    Channel{"error", "sum of the accepted local error estimates, relative; 0 for closed forms", &Rays::error},
-    Channel{"drift", "|H| / E^2 at the end of the ray; 0 for closed forms", &Rays::drift},
-};
-
-/// Calls f(channel, vector) for every column of `table` (Hits or Rays).
-template <class Table, class Channels, class F>
-void for_each_channel(Table& table, const Channels& channels, F&& f) {
-  std::apply([&](const auto&... channel) { (f(channel, table.*channel.column), ...); }, channels);
+/// Calls f(info, column, other columns…) for every channel that `table` holds, with the columns of the other
+/// tables that stand at the same place.
+template <class F, class Table, class... Others>
+void for_each_channel(F&& f, Table& table, Others&... others) {
+  const auto visit = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
+    if (has_channel(table, i))
+      f(info_of(table, i), std::get<i>(columns(table)), std::get<i>(columns(others))...);
+  };
+  const auto all = [&]<std::size_t... i>(std::index_sequence<i...>) {
+    (visit(std::integral_constant<std::size_t, i>{}), ...);
+  };
+  all(std::make_index_sequence<std::tuple_size_v<decltype(columns(table))>>{});
 }
 
 }  // namespace nullcone

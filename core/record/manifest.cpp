@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -9,14 +10,51 @@ namespace nullcone {
 using nlohmann::json;
 
 namespace {
-constexpr int kNewestFormat = 1;
+
+json to_json(ChannelSet channels) {
+  json out = json::array();
+  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
+    if (channels.has(i)) out.push_back(std::string(kHitChannelInfo[i].name));
+  return out;
 }
+
+ChannelSet channels_from(JsonObject& root) {
+  ChannelSet out;
+  const json& names = root.at("channels");
+  if (!names.is_array()) root.refuse("channels", "expected a list of names");
+  for (const json& name : names) {
+    std::size_t i = 0;
+    while (i < kHitChannelInfo.size() && name != std::string(kHitChannelInfo[i].name)) ++i;
+    if (i == kHitChannelInfo.size())
+      root.refuse("channels", "names a channel that this program does not know");
+    out.bits |= 1U << i;
+  }
+  if ((kLeastChannels & out) != kLeastChannels) root.refuse("channels", "expected Z, A and id among them");
+  return out;
+}
+
+/// What format 2 has added.
+void read_window(JsonObject& root, Manifest& m) {
+  if (m.format == 1) {
+    m.lines = m.traced_lines = m.height;
+    return;
+  }
+  m.first_line = static_cast<int>(root.integer("first_line", 0, m.height - 1));
+  m.lines = static_cast<int>(root.integer("lines", 1, m.height - m.first_line));
+  m.traced_lines = static_cast<int>(root.integer("traced_lines", 0, m.lines));
+  m.samples = static_cast<int>(root.integer("samples", 1, 16));
+  m.channels = channels_from(root);
+  m.setting = canonical_json(root.at("setting"));
+  m.seconds = root.number("seconds");
+}
+
+}  // namespace
 
 std::string manifest_to_json(const Manifest& m) {
   json objects = json::array();
   for (const ObjectEntry& object : m.objects)
     objects.push_back({{"name", object.name}, {"tau_origin", object.tau_origin}});
-  return json{{"format", m.format},
+  json out = {{"format", m.format},
               {"width", m.width},
               {"height", m.height},
               {"scene", m.scene},
@@ -28,8 +66,16 @@ std::string manifest_to_json(const Manifest& m) {
               {"host", m.host},
               {"core_seconds", m.core_seconds},
               {"hits_sha256", m.hits_sha256},
-              {"rays_sha256", m.rays_sha256}}
-      .dump(-1, ' ', false, json::error_handler_t::replace);
+              {"rays_sha256", m.rays_sha256}};
+  if (m.format > 1)
+    out.update(json{{"first_line", m.first_line},
+                    {"lines", m.lines},
+                    {"traced_lines", m.traced_lines},
+                    {"samples", m.samples},
+                    {"channels", to_json(m.channels)},
+                    {"setting", m.setting.empty() ? json::object() : json::parse(m.setting)},
+                    {"seconds", m.seconds}});
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 Manifest manifest_from_json(const std::string& text, const std::string& place) {
@@ -42,6 +88,7 @@ Manifest manifest_from_json(const std::string& text, const std::string& place) {
                                 std::to_string(kNewestFormat) + "; use a newer nullcone");
   m.width = static_cast<int>(root.integer("width", 1, 1L << 28));
   m.height = static_cast<int>(root.integer("height", 1, 1L << 28));
+  read_window(root, m);
   m.scene = root.text("scene");
   m.scene_sha256 = root.text("scene_sha256");
   m.metric = root.text("metric");

@@ -2,23 +2,24 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "core/record/hits.h"
 
 namespace nullcone {
 
-/// Bytes that a dataset and its preview take in memory; every channel has four bytes.
-constexpr std::uint64_t dataset_bytes(std::uint64_t pixels, std::uint64_t crossings_per_pixel) {
-  constexpr std::uint64_t crossing = 4 * std::tuple_size_v<decltype(kHitChannels)>;
-  constexpr std::uint64_t pixel =
-      4 * std::tuple_size_v<decltype(kRayChannels)> + sizeof(Hits::offset[0]) + 4 * sizeof(float);
-  return pixels * (pixel + crossings_per_pixel * crossing);
+/// Bytes that records and their preview take in memory if every ray hits something once; every channel has
+/// four bytes.
+constexpr std::uint64_t dataset_bytes(std::uint64_t pixels, std::uint64_t samples, ChannelSet channels) {
+  const auto crossing = 4 * static_cast<std::uint64_t>(std::popcount(channels.bits));
+  constexpr std::uint64_t ray = 4 * kRayChannelInfo.size(),
+                          pixel = sizeof(Hits::offset[0]) + 4 * sizeof(float);
+  return pixels * (pixel + samples * (ray + crossing));
 }
 
 /// The number after `key` in a file of lines "key number …", such as those under /proc; `fallback` if none.

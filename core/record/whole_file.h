@@ -58,7 +58,14 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   std::ofstream& stream() { return stream_; }
+  /// Of the same file, to be read and patched; flush the stream first.
+  int descriptor() const { return part_.number(); }
 
+  /// Under another name of the same folder.
+  void finish(const std::string& path) {
+    path_ = path;
+    finish();
+  }
   /// Throws WorkError unless every byte is on the disk and under its name.
   void finish() {
     stream_.close();

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/sha256.h"
+#include "core/scene/read_records.h"
 
 namespace nullcone {
 
@@ -128,6 +129,9 @@ Camera read_camera(JsonObject camera) {
     out.fov_horizontal = camera.number("fov_deg", 1e-9, 179.9) * kRadians;
     out.fov_vertical = 2 * std::atan(std::tan(0.5 * out.fov_horizontal) * out.height / out.width);
   }
+  out.samples = camera.has("samples") ? static_cast<int>(camera.integer("samples", 1, 16)) : 1;
+  if (resolution[0] * resolution[1] * out.samples * out.samples > static_cast<double>(kMostPixels))
+    camera.refuse("samples", "asks for more than 268435456 rays");
   orient(out, camera.number_or("azimuth_deg", 0, -1e6, 1e6) * kRadians,
          camera.number_or("elevation_deg", 0, -90, 90) * kRadians,
          camera.number_or("roll_deg", 0, -1e6, 1e6) * kRadians);
@@ -190,6 +194,10 @@ Object read_object(JsonObject object, const MetricDescription& metric, std::set<
   out.name = object.name("name", taken);
   out.shape = read_shape(object.object("shape"), metric);
   if (out.shape.type != ShapeType::sky) out.placing = read_placing(object.object("placing"));
+  out.opacity = object.number_or("opacity", 1, 0, 1);
+  out.transparent = object.boolean("transparent", out.opacity < 1);
+  if (out.opacity < 1 && !out.transparent)
+    object.refuse("transparent", "expected true, or nothing, beside an opacity below 1");
   object.finish();
   return out;
 }
@@ -244,6 +252,7 @@ Scene read_scene(const std::string& text, const std::string& place,
       object.refuse("shape/type", "is a second sky; expected one at most");
   }
   if (scene.objects.empty()) root.refuse("objects", "is empty; expected at least one object to look at");
+  scene.records = read_records(root, scene.camera.samples);
   if (root.has("look")) root.object("look");  // its contents are post-rendering's affair
   root.text("$schema", "");
   root.finish();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/camera.h"
+#include "core/base/channels.h"
 
 namespace nullcone {
 
@@ -78,6 +79,17 @@ struct Object {
   std::string name;
   Shape shape;
   Placing placing;
+  double opacity = 1;        ///< channel A
+  bool transparent = false;  ///< what stands behind it is recorded too
+};
+
+/// What is written down of a ray.
+struct Records {
+  std::uint32_t max_hits = 0;  ///< crossings a ray, also behind opaque surfaces; 0: all up to an opaque one
+  std::uint32_t max_order = kAnyOrder;  ///< most caustics that a ray may have passed
+  ChannelSet channels = kDefaultChannels;
+
+  static constexpr std::uint32_t kAnyOrder = UINT32_MAX;
 };
 
 struct Scene {
@@ -89,6 +101,7 @@ struct Scene {
   bool integrated = false;  ///< rays are integrated, not taken from closed forms
   Accuracy accuracy = kBalanced;
   std::vector<Object> objects;
+  Records records;
   std::string canonical;  ///< canonical JSON of the whole scene
   std::string sha256;     ///< of the canonical JSON without its look
 };

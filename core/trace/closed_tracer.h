@@ -65,7 +65,7 @@ class ClosedTracer final : public Tracer {
     return true;
   }
 
-  std::size_t trace_band(int first_line, int lines, const BandRoom& room) const override {
+  void trace_band(int first_line, int lines, const BandRoom& room) const override {
     const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera_.width);
     BandRays rays(pixels);
     aim<Wide>(camera_, u_camera_, first_line, lookback_, rays);
@@ -75,7 +75,7 @@ class ClosedTracer final : public Tracer {
       with_type(objects_[i],
                 [&](const auto& placed) { search<Wide>(placed, number, observation_, resolution_, rays); });
     }
-    return write(rays, room);
+    write(rays, room);
   }
 
   double tau_origin(std::size_t object) const override { return origins_[object]; }
@@ -96,7 +96,7 @@ class ClosedTracer final : public Tracer {
     return unfit.reason == nullptr;
   }
 
-  std::size_t write(BandRays& rays, const BandRoom& room) const {
+  void write(BandRays& rays, const BandRoom& room) const {
     const std::unique_ptr<Status[]> status(new Status[rays.count]);
     for (std::size_t i = 0; i < rays.count; ++i) {
       status[i] = lookback_ < kFar ? Status::lookback_reached : Status::sky;
@@ -118,13 +118,12 @@ class ClosedTracer final : public Tracer {
     const auto record_sky = [&](std::size_t i, std::uint32_t number) {
       return sky_record({{rays.k[1][i], rays.k[2][i], rays.k[3][i]}}, -1 / rays.k[0][i], number);
     };
-    const std::size_t kept =
-        write_records({rays.count, rays.nearest.get(), status.get()}, static_cast<std::uint32_t>(count_), 0,
-                      room.hits.data(), record_object, record_sky);
+    const HitRoom to = room.hits.extend(rays.count);
+    room.hits.keep(write_records({rays.count, rays.nearest.get(), status.get()},
+                                 static_cast<std::uint32_t>(count_), 0, to.hits, record_object, record_sky));
     for (std::size_t i = 0; i < rays.count; ++i)
       room.rays[i] = {static_cast<std::uint32_t>(rays.doubtful[i] ? Status::step_limit : status[i]),
                       static_cast<std::uint32_t>(rays.steps[i]), 0.0F, 0.0F};
-    return kept;
   }
 
   template <class P>

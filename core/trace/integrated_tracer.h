@@ -64,22 +64,21 @@ class IntegratedTracer final : public Tracer {
     return true;
   }
 
-  std::size_t trace_band(int first_line, int lines, const BandRoom& room) const override {
+  void trace_band(int first_line, int lines, const BandRoom& room) const override {
     constexpr std::size_t kChunk = 2048;  // rays whose columns stay in the second-level cache
     const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera_.width);
     BandRays rays(pixels);
     aim<Wide>(camera_, u_camera_, first_line, setting_.lookback, rays);
-    std::size_t kept = 0;
     with_stepper<Wide>(setting_.accuracy.integrator, [&](auto& stepper) {
       for (std::size_t first = 0; first < pixels; first += kChunk) {
         Flights flights(std::min(kChunk, pixels - first));
         launch(stepper, rays, first, flights);
         march<Wide>(stepper, setting_, flights);
-        kept += write(stepper, flights, static_cast<std::uint32_t>(first), room.hits.data() + kept,
-                      room.rays.data() + first);
+        const HitRoom to = room.hits.extend(flights.count);
+        room.hits.keep(
+            write(stepper, flights, static_cast<std::uint32_t>(first), to.hits, room.rays.data() + first));
       }
     });
-    return kept;
   }
 
   double tau_origin(std::size_t object) const override { return origins_[object]; }

@@ -12,14 +12,17 @@
 
 namespace nullcone {
 
-/// Scan lines a band: the unit of work, of writing and of memory.
-inline constexpr int kBandLines = 16;
-
-/// One crossing, in full precision; files keep floats of it (core/record/hits.h has the meanings).
+/// One crossing, in full precision; files keep floats of it (core/base/channels.h has the meanings).
 struct HitRecord {
   std::uint32_t pixel;  ///< within the band
   std::uint32_t id, order;
   double Z, u, v, shift, t, tau, mu;
+};
+
+/// What a crossing tells on request: the channels duv, N, K, P.
+struct HitDetail {
+  std::array<double, 4> duv{};  ///< du/dx, dv/dx, du/dy, dv/dy; x and y in pixels
+  Triple N{}, K{}, P{};
 };
 
 struct RayRecord {
@@ -27,9 +30,26 @@ struct RayRecord {
   float error, drift;
 };
 
-/// Room for the records of a band, given by the caller: one hit and one ray a pixel.
+/// Room for crossings; `details` may be null.
+struct HitRoom {
+  HitRecord* hits;
+  HitDetail* details;
+};
+
+/// Takes the crossings of a band: by pixel, those of a pixel by Z. Kernels hold no containers, so memory is
+/// the caller's affair.
+class HitSink {
+ public:
+  virtual ~HitSink();
+  /// Room for `count` crossings behind those that are kept.
+  virtual HitRoom extend(std::size_t count) = 0;
+  /// The first `count` crossings of the last room are kept.
+  virtual void keep(std::size_t count) = 0;
+};
+
+/// Room for the records of a band: one ray a pixel.
 struct BandRoom {
-  std::span<HitRecord> hits;
+  HitSink& hits;
   std::span<RayRecord> rays;
 };
 
@@ -37,8 +57,8 @@ struct BandRoom {
 class Tracer {
  public:
   virtual ~Tracer();
-  /// Traces `lines` (<= kBandLines) scan lines from `first_line` on; returns how many hits were written.
-  virtual std::size_t trace_band(int first_line, int lines, const BandRoom& room) const = 0;
+  /// Traces `lines` (<= kBandLines) scan lines from `first_line` on.
+  virtual void trace_band(int first_line, int lines, const BandRoom& room) const = 0;
   /// Proper time that the channel `tau` of object number `object` (from 0) counts from.
   virtual double tau_origin(std::size_t object) const = 0;
   /// By how much lengths within object number `object` (from 0) are off, relatively: its frame is right to

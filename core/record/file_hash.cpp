@@ -1,0 +1,71 @@
+#include "core/record/file_hash.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "core/base/sha256.h"
+
+namespace nullcone {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 20, kDigits = 64;
+/// How the attribute stands in an OpenEXR header: name, type, length.
+constexpr std::string_view kBefore{"nullconeSha256\0string\0\x40\0\0\0", 26};
+/// A scene of 64 MiB may stand before it.
+constexpr std::uint64_t kHeader = std::uint64_t{200} << 20;
+
+/// Up to `size` bytes from `at` on; fewer at the end of the file.
+std::size_t read_at(int descriptor, std::uint64_t at, char* to, std::size_t size) {
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t got = ::pread(descriptor, to + done, size - done, static_cast<off_t>(at + done));
+    if (got <= 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> find_text(int descriptor, std::string_view text, std::uint64_t within) {
+  std::vector<char> block(kBlock + text.size());
+  for (std::uint64_t at = 0; at < within; at += kBlock) {
+    const std::size_t size = read_at(descriptor, at, block.data(), block.size());
+    const std::size_t found = std::string_view(block.data(), size).find(text);
+    if (found != std::string_view::npos) return at + found;
+    if (size < block.size()) break;
+  }
+  return {};
+}
+
+std::optional<std::uint64_t> find_file_hash(int descriptor) {
+  const auto found = find_text(descriptor, kBefore, kHeader);
+  return found ? std::optional(*found + kBefore.size()) : std::nullopt;
+}
+
+std::string stored_file_hash(int descriptor, std::uint64_t place) {
+  std::string out(kDigits, ' ');
+  out.resize(read_at(descriptor, place, out.data(), kDigits));
+  return out;
+}
+
+std::string compute_file_hash(int descriptor, std::uint64_t place) {
+  Sha256 hash;
+  std::vector<char> block(kBlock);
+  std::uint64_t at = 0;
+  while (const std::size_t size = read_at(descriptor, at, block.data(), block.size())) {
+    const std::uint64_t begin = std::clamp(place, at, at + size),
+                        end = std::clamp(place + kDigits, at, at + size);
+    std::fill(block.begin() + static_cast<std::ptrdiff_t>(begin - at),
+              block.begin() + static_cast<std::ptrdiff_t>(end - at), '0');
+    hash.add(std::string_view(block.data(), size));
+    at += size;
+  }
+  return hash.digits();
+}
+
+}  // namespace nullcone

@@ -1,0 +1,72 @@
+#include <unistd.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/version.h"
+#include "core/trace/trace_scene.h"
+
+namespace nullcone {
+
+namespace {
+
+using nlohmann::json;
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+/// Everything that the numbers of a picture depend on, besides objects, with all defaults resolved. Angles in
+/// radians, as the code has them.
+json setting(const Scene& scene) {
+  const Camera& c = scene.camera;
+  const Observer& o = scene.observer;
+  json paths = {{"type", scene.integrated ? "integrated" : "closed"},
+                {"max_lookback", std::isfinite(scene.max_lookback) && scene.max_lookback < 1e300
+                                     ? json(scene.max_lookback)
+                                     : json("unlimited")}};
+  if (scene.integrated)
+    paths["accuracy"] = {
+        {"rtol", scene.accuracy.rtol},
+        {"atol", scene.accuracy.atol},
+        {"integrator", std::string(kIntegratorNames[static_cast<std::size_t>(scene.accuracy.integrator)])}};
+  json records = json::object();
+  if (scene.records.max_hits > 0) records["max_hits"] = scene.records.max_hits;
+  if (scene.records.max_order != Records::kAnyOrder) records["order"] = scene.records.max_order;
+  return {{"metric_parameters", scene.metric_parameters},
+          {"observer",
+           {{"event", o.event},
+            {"velocity", o.velocity},
+            {"frame", o.frame == ObserverFrame::normal ? "normal" : "static"}}},
+          {"camera",
+           {{"type", c.type == CameraType::perspective ? "perspective" : "panorama"},
+            {"samples", c.samples},
+            {"fov_rad", {c.fov_horizontal, c.fov_vertical}},
+            {"forward", c.forward},
+            {"left", c.left},
+            {"up", c.up}}},
+          {"paths", paths},
+          {"records", records}};
+}
+
+}  // namespace
+
+Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& tracer) {
+  Manifest out;
+  out.set_size(scene.camera.width, scene.camera.height);
+  out.samples = scene.camera.samples;
+  out.channels = scene.records.channels;
+  out.scene = scene.canonical;
+  out.scene_sha256 = scene.sha256;
+  out.metric = scene.metric;
+  out.setting = setting(scene).dump();
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    out.objects.push_back({scene.objects[i].name, tracer.tau_origin(i)});
+  out.version = code_version();
+  out.isa = spacetime.isa();
+  out.host = host_name();
+  return out;
+}
+
+}  // namespace nullcone

@@ -1,0 +1,48 @@
+// Any bytes, read as a scene, a look or a manifest (the first byte says which): a result or a complaint.
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/record/dataset_file.h"
+#include "core/scene/read_scene.h"
+#include "postrender/look.h"
+#include "postrender/look_source.h"
+
+namespace {
+
+using namespace nullcone;
+
+/// Two spacetimes as the reader of scenes sees them.
+const std::vector<MetricDescription>& metrics() {
+  static const std::vector<MetricDescription> out = {
+      {"goedel", {{"a", 1, 1e-6, 1e15, {}}}, 0, true},
+      {"kerr_schild", {{"mass", 1, 1e-6, 1e12, {}}, {"chart", 0, 0, 1, {"outgoing", "ingoing"}}}, 2, false}};
+  return out;
+}
+
+void read(char what, const std::string& text) {
+  if (what % 4 == 0) {
+    read_scene(text, "scene", metrics());
+  } else if (what % 4 == 1) {
+    manifest_from_json(text, "manifest");
+  } else {
+    Manifest manifest;
+    manifest.objects = {{"earth", 0.5}, {"moon", 0}};
+    nlohmann::json look = what % 4 == 2 ? parse_json(text, "look") : nlohmann::json::object();
+    if (what % 4 == 3) postrender::set_entry(look, text);
+    postrender::parse_look(look, {"look", "", "."}, manifest);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  try {
+    read(static_cast<char>(data[0]), {reinterpret_cast<const char*>(data) + 1, size - 1});
+  } catch (const InputError&) {
+  }
+  return 0;
+}
