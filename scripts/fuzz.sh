@@ -1,7 +1,7 @@
 #!/bin/bash
 # Fuzzes the readers of files with clang's libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer.
 #   scripts/fuzz.sh [SECONDS]     for each target (default 600); new inputs land in out/fuzz/
-set -eu
+set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install-deps.sh --fuzz
 cmake --preset fuzz >/dev/null

@@ -2,6 +2,7 @@
 # Installs the Debian packages that Nullcone needs (Debian 12). Quiet and quick when they are there.
 #   scripts/install-deps.sh          to build and run
 #   scripts/install-deps.sh --test   also what scripts/test.sh needs
+#   scripts/install-deps.sh --fuzz   also what scripts/fuzz.sh needs
 set -eu
 packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
@@ -15,7 +16,10 @@ packages=(
   libgtest-dev libbenchmark-dev python3   # tests and benchmarks
   xplanet-images        # the map of the Earth that the demo shows
 )
-[ "${1:-}" = --test ] && packages+=(clang-format openexr)
+case ${1:-} in
+  --test) packages+=(clang-format openexr python3-openimageio) ;;  # the last reads datasets as users do
+  --fuzz) packages+=(clang libclang-rt-dev) ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,7 +1,7 @@
 #include "core/record/exr_guard.h"
 
+#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -37,7 +37,10 @@ class HeaderReader {
     return out;
   }
   void skip(std::uint64_t bytes) { in_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur); }
-  std::uint64_t left() { return size_ - static_cast<std::uint64_t>(in_.tellg()); }
+  std::uint64_t left() {
+    const auto at = static_cast<std::uint64_t>(in_.tellg());
+    return at < size_ ? size_ - at : 0;
+  }
   std::uint64_t size() const { return size_; }
 
  private:
@@ -46,7 +49,7 @@ class HeaderReader {
   std::uint64_t size_;
 };
 
-void check_window(HeaderReader& in) {
+void check_window(HeaderReader& in, bool of_data) {
   constexpr std::int64_t kLargest = std::int64_t{1} << 29;
   std::int32_t box[4];
   for (std::int32_t& corner : box) corner = in.number<std::int32_t>();
@@ -61,6 +64,35 @@ void check_window(HeaderReader& in) {
     in.refuse("has a window that is too large for the file");
 }
 
+/// Bytes of the values whose length OpenEXR takes from their type, whatever the header says.
+struct TypeLength {
+  const char* type;
+  std::int32_t length;
+};
+constexpr std::array kTypes = {
+    TypeLength{"box2i", 16},   TypeLength{"box2f", 16},      TypeLength{"chromaticities", 32},
+    TypeLength{"double", 8},   TypeLength{"compression", 1}, TypeLength{"deepImageState", 1},
+    TypeLength{"envmap", 1},   TypeLength{"float", 4},       TypeLength{"int", 4},
+    TypeLength{"keycode", 28}, TypeLength{"lineOrder", 1},   TypeLength{"m33f", 36},
+    TypeLength{"m33d", 72},    TypeLength{"m44f", 64},       TypeLength{"m44d", 128},
+    TypeLength{"rational", 8}, TypeLength{"tiledesc", 9},    TypeLength{"timecode", 8},
+    TypeLength{"v2i", 8},      TypeLength{"v2f", 8},         TypeLength{"v2d", 16},
+    TypeLength{"v3i", 12},     TypeLength{"v3f", 12},        TypeLength{"v3d", 24}};
+
+/// Whether a value's length may stand in the header; lists of channels are looked at by themselves.
+bool length_fits(const std::string& type, std::int32_t length) {
+  for (const TypeLength& known : kTypes)
+    if (type == known.type) return length == known.length;
+  return type != "preview" && type != "idmanifest";  // of no use here, and with lengths of their own
+}
+
+/// Names, each with 16 bytes, up to an empty one: OpenEXR reads until there, whatever the length says.
+void check_channels(HeaderReader& in, std::int32_t length) {
+  const std::uint64_t before = in.left();
+  while (!in.word().empty()) in.skip(16);
+  if (before - in.left() != static_cast<std::uint64_t>(length)) in.refuse("lists channels wrongly");
+}
+
 /// One attribute; false at the end of a part's header.
 bool check_attribute(HeaderReader& in) {
   const std::string name = in.word();
@@ -69,9 +101,11 @@ bool check_attribute(HeaderReader& in) {
   const auto length = in.number<std::int32_t>();
   if (length < 0 || static_cast<std::uint64_t>(length) > in.left())
     in.refuse("has an attribute that is longer than the file");
+  if (!length_fits(type, length)) in.refuse("has an attribute of a wrong length");
   const std::uint64_t before = in.left();
-  if (type == "box2i" && length == 16) check_window(in);
-  if (name == "chunkCount" && length == 4) {
+  if (type == "chlist") check_channels(in, length);
+  if (type == "box2i") check_window(in, name == "dataWindow");
+  if (name == "chunkCount" && type == "int") {
     const auto count = in.number<std::int32_t>();
     if (count < 0 || static_cast<std::uint64_t>(count) > in.size() / 16)
       in.refuse("counts more chunks than the file can hold");

@@ -42,6 +42,10 @@ struct RestPlacing {
         const S distance = norm(out.X);
         out.clearance = select(distance > S(1.5 * placing->ball),
                                min((distance - S(placing->ball)) / out.slope_max, out.valid), S(0.0));
+        // What recedes on a straight line never comes back.
+        const auto gone =
+            (out.bend_max == S(0.0)) & (dot(out.X, out.slope) > S(0.0)) & (out.clearance > S(0.0));
+        out.clearance = select(gone, S(kFar), out.clearance);
       }
       const auto rows = convert<S>(placing->axes);
       out.X = rows * out.X;
