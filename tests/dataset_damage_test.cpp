@@ -7,8 +7,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <span>
 
@@ -120,6 +122,49 @@ TEST_F(DatasetFile, APictureBeyondTheFileIsRefusedBeforeItsMemoryIsTaken) {
   const std::string found = complaint(bytes);
   EXPECT_FALSE(found.empty());
   expect_modest(found, "16777216 x 4 pixels");
+}
+
+/// All values of the attribute replaced.
+std::string with_window(std::string bytes, const char* name, std::array<std::int32_t, 4> window) {
+  const std::string key = std::string(name) + std::string("\0box2i\0\x10\0\0\0", 11);
+  for (std::size_t at = bytes.find(key); at != std::string::npos; at = bytes.find(key, at + 1))
+    std::memcpy(&bytes[at + key.size()], window.data(), sizeof window);
+  return bytes;
+}
+
+TEST_F(DatasetFile, HeadersThatLieGetOneLineAndNoMemory) {
+  const MemoryLimit limit;
+  const std::string bytes = whole_file();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max(), kLeast = -kMost - 1;
+  const std::array<std::array<std::int32_t, 4>, 6> windows = {{{0, 0, kMost, kMost},
+                                                               {0, 0, kMost, 3},
+                                                               {0, 0, 5, kMost},
+                                                               {kLeast, kLeast, kMost, kMost},
+                                                               {0, 0, -1, -1},
+                                                               {kLeast, 0, 5, 3}}};
+  for (const auto& window : windows)
+    for (const char* name : {"dataWindow", "displayWindow"}) {
+      const std::string found = complaint(with_window(bytes, name, window));
+      EXPECT_FALSE(found.empty()) << name << " " << window[2] << " x " << window[3];
+      EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+      expect_modest(found, name);
+    }
+}
+
+TEST_F(DatasetFile, CountsOfCrossingsThatLieGetOneLineAndNoMemory) {
+  const MemoryLimit limit;
+  const std::string bytes = whole_file();
+  const std::array<std::uint32_t, 6> first_line = {0, 3, 5, 6, 6, 9};  // crossings up to each pixel
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(first_line.data()), 24));
+  ASSERT_NE(at, std::string::npos);
+  for (const std::uint32_t lie : {0xffffffffU, 0x7fffffffU, 1U << 30, 1U << 20, 4000U, 10U}) {
+    std::string wrong = bytes;
+    std::memcpy(&wrong[at + 20], &lie, 4);
+    const std::string found = complaint(wrong);
+    EXPECT_FALSE(found.empty()) << lie;
+    EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+    expect_modest(found, "count " + std::to_string(lie));
+  }
 }
 
 TEST_F(DatasetFile, StrangersAreRefusedByName) {

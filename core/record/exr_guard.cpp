@@ -56,11 +56,12 @@ void check_window(HeaderReader& in, bool of_data) {
   for (const std::int64_t corner : box)
     if (corner < -kLargest || corner > kLargest) in.refuse("has a window of more than 2^29 pixels");
   if (box[2] < box[0] || box[3] < box[1]) in.refuse("has an empty window");
+  if (!of_data) return;
   // Every 16 lines or fewer are a chunk of at least 8 bytes, with 8 more in a table. Deflate shrinks 1032
   // to 1.
   const std::uint64_t width = static_cast<std::uint64_t>(std::int64_t{box[2]} - box[0] + 1),
                       height = static_cast<std::uint64_t>(std::int64_t{box[3]} - box[1] + 1);
-  if (height / 16 > in.size() / 8 || width > 1100 * in.size())
+  if (height / 16 > in.size() / 16 || width > 1100 * in.size())
     in.refuse("has a window that is too large for the file");
 }
 
