@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <future>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -84,7 +85,7 @@ struct DatasetWriter::Impl {
         preview.size() != 4 * width * static_cast<std::size_t>(count) ||
         count != std::min(kBandLines, manifest.lines - lines))
       throw std::invalid_argument("a band does not fit the dataset");
-    hash.add(band);
+    const auto hashed = std::async(std::launch::async, [&] { hash.add(band); });  // ends with this function
     write_preview(preview, count);
     write_hits(band.hits, count);
     parts->rays.setFrameBuffer(

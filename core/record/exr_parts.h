@@ -13,7 +13,7 @@
 namespace nullcone::exr {
 
 inline constexpr const char* kManifest = "nullconeManifest";
-/// SHA-256 of the whole file, taken with 64 zeros in the place of its digits.
+/// See file_hash.h.
 inline constexpr const char* kFileHash = "nullconeSha256";
 inline constexpr std::array kPreviewChannels = {"R", "G", "B", "A"};
 enum Part { preview_part, hits_part, rays_part };

@@ -3,7 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "core/base/sha256.h"
@@ -54,18 +57,28 @@ std::string stored_file_hash(int descriptor, std::uint64_t place) {
 }
 
 std::string compute_file_hash(int descriptor, std::uint64_t place) {
-  Sha256 hash;
-  std::vector<char> block(kBlock);
-  std::uint64_t at = 0;
-  while (const std::size_t size = read_at(descriptor, at, block.data(), block.size())) {
-    const std::uint64_t begin = std::clamp(place, at, at + size),
-                        end = std::clamp(place + kDigits, at, at + size);
-    std::fill(block.begin() + static_cast<std::ptrdiff_t>(begin - at),
-              block.begin() + static_cast<std::ptrdiff_t>(end - at), '0');
-    hash.add(std::string_view(block.data(), size));
-    at += size;
-  }
-  return hash.digits();
+  const auto size = static_cast<std::uint64_t>(std::max<off_t>(::lseek(descriptor, 0, SEEK_END), 0));
+  const std::uint64_t blocks = (size + kBlock - 1) / kBlock;
+  std::vector<std::string> digests(blocks);
+  std::atomic<std::uint64_t> next = 0;
+  const auto work = [&] {
+    std::vector<char> block(kBlock);
+    for (std::uint64_t i; (i = next++) < blocks;) {
+      const std::uint64_t at = i * kBlock, end = at + read_at(descriptor, at, block.data(), block.size());
+      const std::uint64_t from = std::clamp(place, at, end), to = std::clamp(place + kDigits, at, end);
+      std::fill(block.begin() + static_cast<std::ptrdiff_t>(from - at),
+                block.begin() + static_cast<std::ptrdiff_t>(to - at), '0');
+      digests[i] = sha256({block.data(), end - at});
+    }
+  };
+  std::vector<std::future<void>> others;
+  const std::uint64_t threads = std::min<std::uint64_t>(std::thread::hardware_concurrency(), blocks);
+  for (std::uint64_t i = 1; i < threads; ++i) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& other : others) other.get();
+  Sha256 all;
+  for (const std::string& digest : digests) all.add(digest);
+  return all.digits();
 }
 
 }  // namespace nullcone
