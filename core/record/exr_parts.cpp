@@ -2,6 +2,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 namespace nullcone::exr {
@@ -35,7 +36,7 @@ std::vector<Imf::Header> make_headers(const Manifest& manifest, const std::strin
   preview.insert("software", Imf::StringAttribute(manifest.version));
 
   Imf::Header hits = part_header(manifest, hits_part, Imf::DEEPSCANLINE, Imf::NO_COMPRESSION);
-  hits.insert("deepImageState", Imf::StringAttribute("sorted"));
+  Imf::addDeepImageState(hits, Imf::DIS_SORTED);
   for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
     if (manifest.channels.has(i))
       hits.channels().insert(std::string(kHitChannelInfo[i].name),
