@@ -12,12 +12,13 @@ packages=(
   libtbb-dev            # threads
   libopenexr-dev libimath-dev   # datasets
   libopenimageio-dev    # textures and pictures
+  libmurmurhash-dev     # names in Cryptomatte layers
   nlohmann-json3-dev libcli11-dev libssl-dev   # JSON, command lines, SHA-256
   libgtest-dev libbenchmark-dev python3   # tests and benchmarks
   xplanet-images        # the map of the Earth that the demo shows
 )
 case ${1:-} in
-  --test) packages+=(clang-format openexr python3-openimageio) ;;  # the last reads datasets as users do
+  --test) packages+=(clang-format openexr python3-openimageio python3-numpy) ;;  # the last reads datasets as users do
   --fuzz) packages+=(clang libclang-rt-dev) ;;
 esac
 

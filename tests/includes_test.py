@@ -17,7 +17,7 @@ ALLOWED = {
     "postrender": {"core/base", "core/record"},
     "apps": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender"},
     "bench": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender"},
-    "tests": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender"},
+    "tests": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender", "apps"},
 }
 PACK = "core/base/pack.h"
 ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".in", ".inl"}

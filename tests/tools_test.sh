@@ -97,7 +97,7 @@ expect "sum(o['hits'] for o in d['objects']) == d['hits']['count']"
 expect "all(len(d['payload'][part]) == 64 for part in ('hits', 'rays'))"
 expect "isinstance(d['isa'], str) and d['core_seconds'] >= 0 and d['scene']['camera']['resolution'] == [132, 35]"
 run 0 "$info" a.exr
-grep -q '^width: 132$' out || fault "nullcone-info without --json gives lines of key: value"
+grep -q '^  picture *132 x 35 pixels' out || fault "nullcone-info without --json gives lines for people"
 run 0 "$info" a.exr --json --pixel 0,34
 expect "d['pixel'] == [0, 34] and set(d) == {'pixel', 'rays', 'hits'} and d['hits'] == []"
 expect "d['rays']['status'] == 'lookback_reached' and d['rays']['steps'] > 0 and d['rays']['error'] == 0"
@@ -131,7 +131,8 @@ bytes_[at] ^= 1
 open("flipped.exr", "wb").write(bytes_)
 PYTHON
 run 1 "$info" flipped.exr --verify
-{ [ "$(wc -l <out)" -eq 2 ] && grep -q 'flipped.exr: hits: SHA-256' out && grep -q 'flipped.exr: file: SHA-256' out; } || fault "--verify names one fault a line"
+{ [ "$(wc -l <out)" -eq 2 ] && grep -q 'flipped.exr: hits: SHA-256' out && grep -q 'flipped.exr: file: SHA-256' out; } ||
+  fault "--verify names one fault a line"
 # A header with a text that is nested too deep to print.
 python3 - <<'PYTHON'
 data = open("a.exr", "rb").read()

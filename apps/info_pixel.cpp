@@ -1,0 +1,73 @@
+#include "apps/info.h"
+#include "core/base/error.h"
+
+namespace nullcone {
+
+namespace {
+
+/// Number of the scan line in the file's window. Throws InputError.
+int line_in_window(const Manifest& m, int x, int y) {
+  const auto size = std::to_string(m.width) + " x " + std::to_string(m.height) + " pixels";
+  if (x < 0 || x >= m.width || y < 0 || y >= m.height)
+    throw InputError("--pixel", "lies outside the picture of " + size);
+  if (y < m.first_line || y >= m.first_line + m.lines)
+    throw InputError("--pixel", "lies outside the window: scan lines " + std::to_string(m.first_line) +
+                                    " to " + std::to_string(m.first_line + m.lines - 1) +
+                                    " of a picture of " + size);
+  return y - m.first_line;
+}
+
+Report ray_record(const Rays& rays, std::size_t i) {
+  return {{"status", status_name(rays.status[i])},
+          {"steps", rays.steps[i]},
+          {"error", number(rays.error[i])},
+          {"drift", number(rays.drift[i])}};
+}
+
+/// One record, or with samples a list of them.
+Report ray_records(const Manifest& m, const Rays& rays, int x) {
+  const auto n = static_cast<std::size_t>(m.samples), wide = n * static_cast<std::size_t>(m.width);
+  if (n == 1) return ray_record(rays, static_cast<std::size_t>(x));
+  Report out = Report::array();
+  for (std::size_t row = 0; row < n; ++row)
+    for (std::size_t column = 0; column < n; ++column) {
+      Report ray = {{"sample", row * n + column}};
+      ray.update(ray_record(rays, row * wide + static_cast<std::size_t>(x) * n + column));
+      out.push_back(ray);
+    }
+  return out;
+}
+
+/// Channels of a group with more than one become a list under its name; `id` becomes the object's name.
+Report hit_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
+  Report out;
+  for_each_channel(
+      [&](const ChannelInfo& channel, const auto& column) {
+        const std::string group(channel.group());
+        if (channel.name == "id") {
+          const std::size_t id = hits.id[k];
+          out["object"] =
+              id >= 1 && id <= m.objects.size() ? Report(m.objects[id - 1].name) : Report(nullptr);
+        } else if (channel.name == channel.group()) {
+          out[group] = number(column[k]);
+        } else {
+          out[group].push_back(number(column[k]));
+        }
+      },
+      hits);
+  return out;
+}
+
+}  // namespace
+
+Report pixel_records(DatasetReader& reader, int x, int y) {
+  const Manifest& m = reader.manifest();
+  const Band line = reader.band(line_in_window(m, x, y), 1);
+  const auto pixel = static_cast<std::size_t>(x);
+  Report hits = Report::array();
+  for (std::uint64_t k = line.hits.offset[pixel]; k < line.hits.offset[pixel + 1]; ++k)
+    hits.push_back(hit_record(m, line.hits, k));
+  return {{"pixel", {x, y}}, {"rays", ray_records(m, line.rays, x)}, {"hits", hits}};
+}
+
+}  // namespace nullcone
