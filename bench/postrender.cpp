@@ -20,8 +20,7 @@ constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 /// A world map over the whole picture, warped a little, 1.6 texels a pixel; `turned` by a right angle.
 Dataset world(bool turned) {
   Dataset out;
-  out.manifest.width = kWidth;
-  out.manifest.height = kHeight;
+  out.manifest.set_size(kWidth, kHeight);
   out.manifest.objects = {{"earth"}};
   for (int row = 0; row < kHeight; ++row)
     for (int column = 0; column < kWidth; ++column) {

@@ -64,7 +64,7 @@ void march_chunk(Stepper& stepper, const MarchSetting<M>& setting, const Rays& r
         flights.h);
     group.store(S(kGrowth), flights.growth);
   }
-  march<S>(stepper, setting, flights);
+  march<S>(stepper, setting, flights, nullptr);
   for (std::size_t i = 0; i < rays.count; ++i) {
     End& end = rays.end[i];
     const auto y = State<double>::map([&](std::size_t c) { return end.y[c] = flights.y[c][i]; });

@@ -18,6 +18,7 @@ struct EllisWormhole {
   static constexpr std::tuple parameters{
       Parameter<EllisWormhole>{"throat", &EllisWormhole::throat, 1e-6, 1e12}};
   static constexpr int skies = 2;
+  static constexpr bool central = true;
 
   double quarter() const { return 0.25 * throat * throat; }
 

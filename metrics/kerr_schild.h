@@ -25,6 +25,7 @@ struct KerrSchild {
       Parameter<KerrSchild>{"spin", &KerrSchild::spin, -1, 1},
       Parameter<KerrSchild>{"chart", &KerrSchild::chart, 0, 1, {"outgoing", "ingoing"}}};
   static constexpr int skies = 1;
+  static constexpr bool central = true;  // exactly for spin 0
 
   double a() const { return spin * mass; }
   /// The horizons r_+ (side 1) and r_- (side -1).

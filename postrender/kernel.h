@@ -18,6 +18,7 @@ namespace nullcone::postrender {
 struct Layer {
   const std::uint32_t *id, *order;
   const float *u, *v, *shift, *opacity;
+  std::array<const float*, 4> duv = {};  ///< du/dx, dv/dx, du/dy, dv/dy; null where they are not recorded
 };
 
 /// How far (u, v) moves from one pixel to the next, to the right and down; signs mean nothing.
@@ -67,11 +68,13 @@ struct Kernel {
   /// kernel_footprint.h.
   void (*footprints)(const std::array<Layer, 3>& lines, std::size_t width, std::size_t first,
                      std::size_t count, const Footprints& out);
+  /// The same from what the middle line has recorded in `duv`.
+  void (*recorded_footprints)(const Layer& line, std::size_t first, std::size_t count, const Footprints& out);
   /// Weights of the crossings of a rank, and what shines through to the next one: false if nothing does
   /// anywhere. Pixels that are not seen any more lose their appearance.
   bool (*weigh)(const float* opacity, std::size_t count, float* transmittance, float* weight,
                 std::uint32_t* appearance);
-  // The texture's colours along a run.
+  // The texture's colours along a run, of images also the alpha (colours are multiplied by it).
   void (*image)(const ImageView& image, const Run& run, Rgbx* out);
   void (*checkerboard)(const CheckerboardTexture& board, const Run& run, Rgbx* out);
   // sum += weight * what is seen of a surface that is coloured so.

@@ -1,4 +1,5 @@
-// How far the texture coordinates move from pixel to pixel, from the records alone.
+// How far the texture coordinates move from pixel to pixel: as recorded (duv), or else from neighbouring
+// records.
 //
 // A neighbour counts when its crossing of the same rank met the same object by an image of the same order. Of
 // the two neighbours along a direction the nearer one in (u, v) is taken, so that the edge between two images
@@ -69,6 +70,22 @@ void footprints(const std::array<postrender::Layer, 3>& lines, std::size_t width
                 std::size_t count, const postrender::Footprints& out) {
   steps_to_the_right(lines[1], width, first, count, out);
   steps_down(lines, first, count, out);
+}
+
+/// Unknown steps (infinite or not numbers) become endless ones: they blur a texture fully.
+inline void bounded_steps(const float* __restrict recorded, std::size_t count, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool known = __builtin_fabsf(recorded[i]) < kFarthest;
+    out[i] = known ? recorded[i] : kFarthest;
+  }
+}
+
+void recorded_footprints(const postrender::Layer& line, std::size_t first, std::size_t count,
+                         const postrender::Footprints& out) {
+  bounded_steps(line.duv[0] + first, count, out.u_right);
+  bounded_steps(line.duv[1] + first, count, out.v_right);
+  bounded_steps(line.duv[2] + first, count, out.u_down);
+  bounded_steps(line.duv[3] + first, count, out.v_down);
 }
 
 NULLCONE_KERNEL_END

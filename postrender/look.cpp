@@ -38,6 +38,7 @@ TextureLook parse_image(JsonObject& in, const LookSource& source) {
   image.uv.offset = parse_pair(in, "offset", {0, 0});
   image.uv.scale = parse_pair(in, "scale", {1, 1});
   image.mipmap = in.word("filter", {"mipmap", "bilinear"}, "mipmap") == "mipmap";
+  image.alpha = in.boolean("alpha", false);
   return image;
 }
 
@@ -126,6 +127,7 @@ TimeSliceLook parse_time_slice(JsonObject in, const LookSource& source) {
 ObjectLook parse_object(JsonObject in, const LookSource& source) {
   ObjectLook object;
   object.appearance = parse_appearance(in, source);
+  object.opacity = in.number_or("opacity", 1, 0, 1);
   if (in.has("time_slices"))
     for (JsonObject& slice : in.objects("time_slices"))
       object.time_slices.push_back(parse_time_slice(slice, source));
@@ -145,6 +147,16 @@ std::map<std::string, ObjectLook> parse_objects(JsonObject in, const LookSource&
     out.emplace(name, parse_object(in.object(name), source));
   }
   return out;
+}
+
+PixelFilter parse_pixel_filter(JsonObject in) {
+  using Type = PixelFilter::Type;
+  PixelFilter filter;
+  const std::string type = in.word("type", {"box", "gaussian", "mitchell"});
+  filter.type = type == "box" ? Type::box : type == "gaussian" ? Type::gaussian : Type::mitchell;
+  filter.width = in.number_or("width", usual_width(filter.type), 1, kWidestFilter);
+  in.finish();
+  return filter;
 }
 
 void parse_exposure(JsonObject in, DevelopLook& develop) {
@@ -172,6 +184,10 @@ void parse_tone(JsonObject in, DevelopLook& develop) {
 
 }  // namespace
 
+AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) {
+  return {own.texture ? own.texture : from.texture, own.spectrum ? own.spectrum : from.spectrum};
+}
+
 Look parse_look(const nlohmann::json& document, const LookSource& source, const Manifest& manifest) {
   JsonObject in(document, source.place, source.pointer);
   Look look;
@@ -182,6 +198,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
     look.effects.searchlight = effects.boolean("searchlight", true);
     effects.finish();
   }
+  if (in.has("pixel_filter")) look.pixel_filter = parse_pixel_filter(in.object("pixel_filter"));
   if (in.has("exposure")) parse_exposure(in.object("exposure"), look.develop);
   if (in.has("tone")) parse_tone(in.object("tone"), look.develop);
   if (in.word("gamut", {"hue_preserving", "clip"}, "hue_preserving") == "clip")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/record/dataset.h"
+#include "postrender/pixel_filter.h"
 #include "postrender/spectrum.h"
 #include "postrender/texture.h"
 
@@ -20,6 +21,7 @@ struct ImageLook {
   std::string pointer;  ///< "/objects/earth/texture/file", for complaints
   UvTransform uv;
   bool mipmap = true;
+  bool alpha = false;  ///< the picture's alpha counts
 };
 using TextureLook = std::variant<ColorTexture, CheckerboardTexture, ImageLook>;
 
@@ -44,6 +46,7 @@ struct TimeSliceLook {
 
 struct ObjectLook {
   AppearanceLook appearance;
+  double opacity = 1;                      ///< times what is recorded; 0 hides the object
   std::vector<TimeSliceLook> time_slices;  ///< the first that holds wins
 };
 
@@ -58,9 +61,13 @@ struct DevelopLook {
 struct Look {
   std::map<std::string, ObjectLook> objects;
   Effects effects;
+  PixelFilter pixel_filter;
   DevelopLook develop;
   Rgb background;  ///< linear
 };
+
+/// The appearance `own`, which inherits what it leaves out.
+AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from);
 
 /// A look as JSON and where it came from.
 struct LookSource {

@@ -97,4 +97,19 @@ void write_picture(const std::string& path, const Image& image, int bits) {
   part.rename();
 }
 
+bool is_exr_name(const std::string& path) { return format_of(path) == "openexr"; }
+
+void write_channel(const std::string& path, const std::string& channel, const Manifest& manifest,
+                   std::span<const float> values) {
+  PartFile part(path);
+  ImageSpec spec(manifest.width, manifest.lines, 1, TypeDesc::FLOAT);
+  spec.y = manifest.first_line;
+  spec.full_height = manifest.height;
+  spec.channelnames = {channel};
+  spec.z_channel = -1;
+  spec.attribute("compression", "zip");
+  write(path, part.name(), "openexr", spec, values.data());
+  part.rename();
+}
+
 }  // namespace nullcone::postrender

@@ -1,8 +1,10 @@
 // Pictures to files, by OpenImageIO.
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "core/record/dataset.h"
 #include "postrender/image.h"
 
 namespace nullcone::postrender {
@@ -15,5 +17,13 @@ void check_picture_name(const std::string& path, int bits);
 /// `path`. The file is written beside its name and renamed when complete; on failure nothing is left behind.
 /// Throws WorkError, and InputError as check_picture_name() does.
 void write_picture(const std::string& path, const Image& image, int bits = 8);
+
+/// Whether check_picture_name() takes it for OpenEXR.
+bool is_exr_name(const std::string& path);
+
+/// Writes numbers, one a pixel of the window of `manifest`, as an EXR file of one float channel; its display
+/// window is the whole picture. Otherwise like write_picture().
+void write_channel(const std::string& path, const std::string& channel, const Manifest& manifest,
+                   std::span<const float> values);
 
 }  // namespace nullcone::postrender

@@ -9,6 +9,8 @@
 #include "core/base/error.h"
 #include "postrender/color.h"
 #include "postrender/develop.h"
+#include "postrender/needed_channels.h"
+#include "postrender/sample_grid.h"
 
 namespace nullcone::postrender {
 
@@ -16,10 +18,25 @@ namespace {
 
 constexpr int kBandRows = 16;
 
+/// Calls work(row) for all rows, with one worker made by `make_worker` a thread.
+template <class MakeWorker>
+void for_each_row(int rows, MakeWorker&& make_worker) {
+  const int bands = (rows + kBandRows - 1) / kBandRows;
+  tbb::enumerable_thread_specific<decltype(make_worker())> workers(make_worker);
+  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const auto& range) {
+    auto& work = workers.local();
+    for (int row = range.begin() * kBandRows; row < std::min(rows, range.end() * kBandRows); ++row)
+      work(static_cast<std::size_t>(row));
+  });
+}
+
 /// Everything that the pixel loop takes for granted.
-void check_records(const Dataset& dataset) {
+const Dataset& check_records(const Dataset& dataset) {
   const Hits& hits = dataset.hits;
   const auto refuse = [](const std::string& message) { throw InputError("dataset", message); };
+  for (const std::string_view channel : {"A", "id"})
+    if (!hits.channels.has(channel)) refuse("has no channel '" + std::string(channel) + "'");
+  if (dataset.manifest.samples < 1) refuse("expected at least one sample a pixel");
   if (dataset.manifest.width < 1 || dataset.manifest.lines < 1) refuse("an empty picture");
   if (hits.offset.size() != dataset.pixels() + 1 || hits.offset.front() != 0)
     refuse("expected one count of crossings a pixel");
@@ -35,6 +52,7 @@ void check_records(const Dataset& dataset) {
   for (const std::uint32_t id : hits.id)
     if (id < 1 || id > objects)
       refuse("a crossing names object " + std::to_string(id) + "; expected 1 to " + std::to_string(objects));
+  return dataset;
 }
 
 struct TextureMaker {
@@ -42,8 +60,8 @@ struct TextureMaker {
   Texture operator()(const ColorTexture& color) const { return color; }
   Texture operator()(const CheckerboardTexture& board) const { return board; }
   Texture operator()(const ImageLook& image) const {
-    auto pyramid = cache.get(image.file, image.pointer);
-    return ImageTexture{std::move(pyramid), image.uv, image.mipmap};
+    auto pyramid = cache.get(image.file, image.pointer, image.alpha);
+    return ImageTexture{std::move(pyramid), image.uv, image.mipmap, image.alpha};
   }
 };
 
@@ -57,60 +75,47 @@ struct SpectrumMaker {
 
 }  // namespace
 
-Renderer::Renderer(Dataset dataset, const Kernel& kernel) : dataset_(std::move(dataset)), kernel_(kernel) {
-  check_records(dataset_);
-  one_each_ = lines_with_one_each(dataset_);
-}
+Renderer::Renderer(Dataset dataset, const Kernel& kernel)
+    : manifest_(check_records(dataset).manifest),
+      dataset_(by_samples(std::move(dataset))),
+      one_each_(lines_with_one_each(dataset_)),
+      kernel_(kernel) {}
 
-std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& look, Rgb fallback,
-                                     Effects effects) {
+std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& look, double opacity,
+                                     Rgb fallback, Effects effects) {
   const SpectrumLook spectrum = look.spectrum.value_or(DisplayLook{});
   // A body that radiates by itself needs no colour; one that is shown as it is gets its flat one.
   const Rgb plain = std::holds_alternative<BlackBodyLook>(spectrum) ? Rgb{1, 1, 1} : fallback;
   const TextureLook texture = look.texture.value_or(ColorTexture{plain});
-  shading.appearances.push_back(
-      {std::visit(TextureMaker{textures_}, texture), std::visit(SpectrumMaker{effects}, spectrum)});
+  shading.appearances.push_back({std::visit(TextureMaker{textures_}, texture),
+                                 std::visit(SpectrumMaker{effects}, spectrum), static_cast<float>(opacity)});
   return shading.appearances.size() - 1;
 }
 
 Shading Renderer::prepare(const Look& look) {
+  check_channels(look, manifest_, dataset_.hits.channels, "dataset");
   Shading shading{{}, {}, look.background};
-  for (std::uint32_t id = 1; id <= dataset_.manifest.objects.size(); ++id) {
-    const ObjectEntry& entry = dataset_.manifest.objects[id - 1];
+  for (std::uint32_t id = 1; id <= manifest_.objects.size(); ++id) {
+    const ObjectEntry& entry = manifest_.objects[id - 1];
     const auto found = look.objects.find(entry.name);
     const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
-    const Rgb fallback = default_color(id);
-    ObjectShading out{
-        entry.tau_origin, add_appearance(shading, object.appearance, fallback, look.effects), {}};
-    for (const TimeSliceLook& slice : object.time_slices) {
-      AppearanceLook appearance = slice.appearance;
-      if (!appearance.texture) appearance.texture = object.appearance.texture;
-      if (!appearance.spectrum) appearance.spectrum = object.appearance.spectrum;
-      out.slices.push_back({slice.own_clock, slice.from, slice.to,
-                            add_appearance(shading, appearance, fallback, look.effects)});
-    }
+    const auto add = [&](const AppearanceLook& appearance) {
+      return add_appearance(shading, appearance, object.opacity, default_color(id), look.effects);
+    };
+    ObjectShading out{entry.tau_origin, add(object.appearance), {}};
+    for (const TimeSliceLook& slice : object.time_slices)
+      out.slices.push_back(
+          {slice.own_clock, slice.from, slice.to, add(inherited(slice.appearance, object.appearance))});
     shading.objects.push_back(std::move(out));
   }
   return shading;
-}
-
-/// Calls work(row) for all rows, with one worker made by `make_worker` a thread.
-template <class MakeWorker>
-void Renderer::for_each_row(MakeWorker&& make_worker) const {
-  const int rows = dataset_.manifest.lines, bands = (rows + kBandRows - 1) / kBandRows;
-  tbb::enumerable_thread_specific<decltype(make_worker())> workers(make_worker);
-  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const auto& range) {
-    auto& work = workers.local();
-    for (int row = range.begin() * kBandRows; row < std::min(rows, range.end() * kBandRows); ++row)
-      work(static_cast<std::size_t>(row));
-  });
 }
 
 void Renderer::keep_radiance(const Shading& shading) {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
   radiance_.display.resize(dataset_.pixels());
   radiance_.physical.resize(has_physical(shading) ? dataset_.pixels() : 0);
-  for_each_row([&] {
+  for_each_row(dataset_.manifest.lines, [&] {
     return
         [this, width, shader = LineShader(dataset_, one_each_, shading, kernel_)](std::size_t row) mutable {
           shader.shade(row, radiance_.display.data() + row * width,
@@ -119,9 +124,38 @@ void Renderer::keep_radiance(const Shading& shading) {
   });
 }
 
+/// The radiance of pixels from that of their samples: first along the lines, then down the columns.
+void Renderer::keep_filtered(const Shading& shading, const PixelFilter& filter) {
+  const auto width = static_cast<std::size_t>(manifest_.width);
+  const auto wide = static_cast<std::size_t>(dataset_.manifest.width);
+  const bool physical = has_physical(shading);
+  const std::size_t narrowed = width * static_cast<std::size_t>(dataset_.manifest.lines);
+  Radiance lines{std::vector<Rgbx>(narrowed), std::vector<Rgbx>(physical ? narrowed : 0)};
+  const FilterTable across(filter, manifest_.width, manifest_.samples),
+      down(filter, manifest_.lines, manifest_.samples);
+  for_each_row(dataset_.manifest.lines, [&] {
+    return [&, width, shader = LineShader(dataset_, one_each_, shading, kernel_),
+            line = Radiance{std::vector<Rgbx>(wide), std::vector<Rgbx>(physical ? wide : 0)}](
+               std::size_t row) mutable {
+      shader.shade(row, line.display.data(), physical ? line.physical.data() : nullptr);
+      filter_line(across, line.display.data(), lines.display.data() + row * width);
+      if (physical) filter_line(across, line.physical.data(), lines.physical.data() + row * width);
+    };
+  });
+  radiance_.display.resize(manifest_.pixels());
+  radiance_.physical.resize(physical ? manifest_.pixels() : 0);
+  for_each_row(manifest_.lines, [&] {
+    return [&, width](std::size_t row) {
+      filter_columns(down, row, lines.display.data(), width, radiance_.display.data() + row * width);
+      if (physical)
+        filter_columns(down, row, lines.physical.data(), width, radiance_.physical.data() + row * width);
+    };
+  });
+}
+
 void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
-  const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
-  for_each_row([&] {
+  const std::size_t width = static_cast<std::size_t>(manifest_.width);
+  for_each_row(manifest_.lines, [&] {
     return [this, width, &image, developer = LineDeveloper(look, kernel_)](std::size_t row) mutable {
       developer.develop(radiance_.display.data() + row * width,
                         radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width,
@@ -133,7 +167,7 @@ void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
 void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
   const std::size_t physical_width = has_physical(shading) ? width : 0;
-  for_each_row([&] {
+  for_each_row(manifest_.lines, [&] {
     return [=, &image, shader = LineShader(dataset_, one_each_, shading, kernel_),
             developer = LineDeveloper(look, kernel_),
             line = Radiance{std::vector<Rgbx>(width), std::vector<Rgbx>(physical_width)}](
@@ -154,16 +188,21 @@ Image Renderer::render(const Look& look) {
 void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   // Step 1: textures and tables.
   Shading shading = prepare(look);
-  set_size(image, dataset_.manifest.width, dataset_.manifest.lines, parts);
+  set_size(image, manifest_.width, manifest_.lines, parts);
   // Step 2: shade line by line, unless only the development changed. Radiance is kept where the white must be
-  // found in it, and from the second picture of the same shading on.
+  // found in it, where pixels take in several samples, and from the second picture of the same shading on.
   const bool physical = has_physical(shading),
              white_known = !physical || look.develop.white_cd_m2.has_value();
-  const bool same = shaded_ == shading;
+  const bool same = shaded_ == shading && filter_ == look.pixel_filter;
+  const bool filtered = !is_identity(look.pixel_filter, manifest_.samples);
   if (!same) kept_ = false;
   shaded_.reset();
-  if (!kept_ && (same || !white_known)) {
-    keep_radiance(shading);
+  if (!kept_ && (same || !white_known || filtered)) {
+    if (filtered) {
+      keep_filtered(shading, look.pixel_filter);
+    } else {
+      keep_radiance(shading);
+    }
     kept_ = true;
   }
   // Step 3: develop.
@@ -175,6 +214,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
     shade_and_develop(shading, look.develop, image);
   }
   if (!same) textures_.prune();
+  filter_ = look.pixel_filter;
   shaded_ = std::move(shading);
 }
 

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <span>
 
 namespace nullcone::postrender {
 
 namespace {
-
-constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
 std::size_t appearance_at(const ObjectShading& object, const Hits& hits, std::size_t hit) {
   for (const Slice& slice : object.slices) {
@@ -68,6 +65,15 @@ bool needs_footprint(const Texture& texture) {
   return std::holds_alternative<CheckerboardTexture>(texture);
 }
 
+bool has_alpha(const Texture& texture) {
+  const auto* image = std::get_if<ImageTexture>(&texture);
+  return image != nullptr && image->alpha;
+}
+
+bool lets_light_through(const Appearance& appearance) {
+  return appearance.opacity != 1 || has_alpha(appearance.texture);
+}
+
 }  // namespace
 
 bool has_physical(const Shading& shading) {
@@ -76,66 +82,20 @@ bool has_physical(const Shading& shading) {
   });
 }
 
-std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset) {
-  const auto width = static_cast<std::size_t>(dataset.manifest.width);
-  std::vector<std::uint8_t> out;
-  for (std::size_t line = 0; line < static_cast<std::size_t>(dataset.manifest.lines); ++line) {
-    const std::uint64_t* offset = dataset.hits.offset.data() + line * width;
-    std::uint64_t difference = 0;
-    for (std::size_t i = 0; i <= width; ++i) difference |= offset[i] - offset[0] - i;
-    out.push_back(difference == 0 ? 1 : 0);
-  }
-  return out;
-}
-
-Layer LineShader::Expanded::layer() const {
-  return {id.data(), order.data(), u.data(), v.data(), shift.data(), opacity.data()};
-}
-
 LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one_each, const Shading& shading,
                        const Kernel& kernel)
     : dataset_(dataset),
       one_each_(one_each),
       shading_(shading),
       kernel_(kernel),
+      layers_(dataset, one_each),
+      see_through_(std::ranges::any_of(shading.appearances, lets_light_through)),
       width_(static_cast<std::size_t>(dataset.manifest.width)),
-      height_(static_cast<std::size_t>(dataset.manifest.lines)),
       appearance_(width_),
       transmittance_(width_),
-      weight_(width_) {
-  const std::vector<std::uint32_t> numbers(width_);
-  const std::vector<float> values(width_);
-  nothing_ = {kNowhere, 0, numbers, numbers, values, values, values, values};
-  expanded_.fill(nothing_);
-}
-
-Layer LineShader::layer(std::ptrdiff_t row, std::size_t rank) {
-  if (row < 0 || row >= static_cast<std::ptrdiff_t>(height_)) return nothing_.layer();
-  const Hits& hits = dataset_.hits;
-  const std::size_t line = static_cast<std::size_t>(row);
-  const std::uint64_t* offset = hits.offset.data() + line * width_;
-  // Step 1: as they lie in the dataset, if they lie side by side.
-  if (rank == 0 && one_each_[line] != 0) {
-    const std::size_t i = offset[0];
-    return {&hits.id[i], &hits.order[i], &hits.u[i], &hits.v[i], &hits.shift[i], &hits.A[i]};
-  }
-  // Step 2: else side by side in a copy.
-  Expanded& copy = expanded_[line % 3];
-  if (copy.row == line && copy.rank == rank) return copy.layer();
-  copy.row = line;
-  copy.rank = rank;
-  for (std::size_t i = 0; i < width_; ++i) {
-    const std::size_t hit = offset[i] + rank;
-    const bool there = hit < offset[i + 1];
-    copy.id[i] = there ? hits.id[hit] : 0;
-    copy.order[i] = there ? hits.order[hit] : 0;
-    copy.u[i] = there ? hits.u[hit] : 0;
-    copy.v[i] = there ? hits.v[hit] : 0;
-    copy.shift[i] = there ? hits.shift[hit] : 0;
-    copy.opacity[i] = there ? hits.A[hit] : 0;
-  }
-  return copy.layer();
-}
+      weight_(width_),
+      opacity_(see_through_ ? width_ : 0),
+      clear_colors_(see_through_ ? width_ : 0) {}
 
 bool LineShader::anything_seen(std::size_t row, std::size_t rank) {
   if (one_each_[row] != 0) return rank == 0;
@@ -153,26 +113,66 @@ bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer
     const std::uint32_t id = here.id[first];
     last = end_of_run({here.id, width_}, first);
     const ObjectShading* object = id == 0 ? nullptr : &shading_.objects[id - 1];
-    const std::size_t usual = object == nullptr ? kUnseen : object->appearance;
+    const bool seen = object != nullptr && shading_.appearances[object->appearance].opacity > 0;
+    const std::size_t usual = seen ? object->appearance : kUnseen;
     std::fill(appearance_.begin() + static_cast<std::ptrdiff_t>(first),
               appearance_.begin() + static_cast<std::ptrdiff_t>(last), static_cast<std::uint32_t>(usual));
-    if (object == nullptr || object->slices.empty()) continue;
+    if (!seen || object->slices.empty()) continue;
     for (std::size_t i = first; i < last; ++i)
       appearance_[i] = static_cast<std::uint32_t>(appearance_at(*object, dataset_.hits, offset[i] + rank));
   }
-  return kernel_.weigh(here.opacity, width_, transmittance_.data(), weight_.data(), appearance_.data());
+  if (see_through_) find_opacities(row, rank, here);
+  return kernel_.weigh(see_through_ ? opacity_.data() : here.opacity, width_, transmittance_.data(),
+                       weight_.data(), appearance_.data());
 }
 
-/// Pixels [first, first + count) of the middle one of three lines, at most kSegment.
-void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance,
-                               std::size_t first, std::size_t count, Rgbx* display, Rgbx* physical) {
+/// Opacities of one rank: as recorded, times the object's, times the texture's alpha. Where there is alpha,
+/// colours are looked up here, and kept.
+void LineShader::find_opacities(std::size_t row, std::size_t rank, const Layer& here) {
+  std::copy_n(here.opacity, width_, opacity_.begin());
+  for (std::size_t first = 0, last = 0; first < width_; first = last) {
+    last = end_of_run(appearance_, first);
+    if (appearance_[first] == kUnseen) continue;
+    const Appearance& appearance = shading_.appearances[appearance_[first]];
+    for (std::size_t i = first; i < last; ++i) opacity_[i] *= appearance.opacity;
+    if (!has_alpha(appearance.texture)) continue;
+    const std::array<Layer, 3> lines = layers_.around(row, rank, here);
+    for (std::size_t from = first; from < last; from += kSegment)
+      look_up(lines, appearance, from, std::min(kSegment, last - from), &clear_colors_[from]);
+    for (std::size_t i = first; i < last; ++i) {
+      Rgbx& color = clear_colors_[i];
+      const float alpha = color.idle;
+      opacity_[i] *= alpha;
+      // Back to the colour of what is there: the weight brings the opacity in again.
+      color = alpha > 0 ? Rgbx{color.r / alpha, color.g / alpha, color.b / alpha} : Rgbx{};
+    }
+  }
+}
+
+/// The texture's colours of pixels [first, first + count) of the middle one of three lines, at most kSegment.
+void LineShader::look_up(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+                         std::size_t count, Rgbx* out) {
   const Layer& here = lines[1];
   const Footprints steps = {footprints_[0].data(), footprints_[1].data(), footprints_[2].data(),
                             footprints_[3].data()};
-  if (needs_footprint(appearance.texture)) kernel_.footprints(lines, width_, first, count, steps);
+  if (needs_footprint(appearance.texture)) {
+    if (layers_.recorded_steps()) {
+      kernel_.recorded_footprints(here, first, count, steps);
+    } else {
+      kernel_.footprints(lines, width_, first, count, steps);
+    }
+  }
   const Run run = {count, here.u + first, here.v + first, here.shift + first, weight_.data() + first, steps};
-  std::visit(TextureColors{kernel_, run, colors_.data()}, appearance.texture);
-  std::visit(SeenLight{kernel_, run, colors_.data(), display + first,
+  std::visit(TextureColors{kernel_, run, out}, appearance.texture);
+}
+
+void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance,
+                               std::size_t first, std::size_t count, Rgbx* display, Rgbx* physical) {
+  const Layer& here = lines[1];
+  const bool known = has_alpha(appearance.texture);
+  if (!known) look_up(lines, appearance, first, count, colors_.data());
+  const Run run = {count, here.u + first, here.v + first, here.shift + first, weight_.data() + first, {}};
+  std::visit(SeenLight{kernel_, run, known ? &clear_colors_[first] : colors_.data(), display + first,
                        physical == nullptr ? nullptr : physical + first},
              appearance.spectrum);
 }
@@ -181,15 +181,14 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearan
 void LineShader::shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display,
                             Rgbx* physical) {
   std::array<Layer, 3> lines = {here, here, here};
-  bool around = false;
+  bool ready = false;
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
     last = end_of_run(appearance_, first);
     if (appearance_[first] == kUnseen) continue;
     const Appearance& appearance = shading_.appearances[appearance_[first]];
-    if (!around && needs_footprint(appearance.texture)) {
-      const auto at = static_cast<std::ptrdiff_t>(row);
-      lines = {layer(at - 1, rank), here, layer(at + 1, rank)};
-      around = true;
+    if (!ready && needs_footprint(appearance.texture)) {
+      lines = layers_.around(row, rank, here);
+      ready = true;
     }
     for (std::size_t from = first; from < last; from += kSegment)
       shade_segment(lines, appearance, from, std::min(kSegment, last - from), display, physical);
@@ -202,7 +201,7 @@ void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical) {
   std::ranges::fill(transmittance_, 1.0f);
   bool shines_through = true;
   for (std::size_t rank = 0; shines_through && anything_seen(row, rank); ++rank) {
-    const Layer here = layer(static_cast<std::ptrdiff_t>(row), rank);
+    const Layer here = layers_.at(static_cast<std::ptrdiff_t>(row), rank);
     shines_through = find_appearances(row, rank, here);
     shade_rank(row, rank, here, display, physical);
   }

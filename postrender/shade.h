@@ -9,6 +9,7 @@
 
 #include "core/record/dataset.h"
 #include "postrender/kernel.h"
+#include "postrender/layers.h"
 #include "postrender/spectrum.h"
 #include "postrender/texture.h"
 
@@ -21,6 +22,7 @@ using Spectrum = std::variant<DisplaySpectrum, BlackBodySpectrum>;
 struct Appearance {
   Texture texture;
   Spectrum spectrum;
+  float opacity = 1;  ///< times that of the crossing; 0: not seen at all
   bool operator==(const Appearance&) const = default;
 };
 
@@ -51,9 +53,6 @@ struct Shading {
 /// Whether any appearance radiates in cd/m^2.
 bool has_physical(const Shading& shading);
 
-/// For each scan line whether every pixel has exactly one crossing: then columns are read as they lie.
-std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset);
-
 /// Shades scan lines; holds the working memory of one thread. Crossings are composited front to back,
 /// L += transmittance * A * colour, until nothing shines through: one rank after the other, and in it one run
 /// of pixels of the same appearance after the other.
@@ -67,16 +66,11 @@ class LineShader {
   void shade(std::size_t row, Rgbx* display, Rgbx* physical);
 
  private:
-  /// A scan line of crossings that do not stand side by side in the dataset, or of none.
-  struct Expanded {
-    std::size_t row, rank;
-    std::vector<std::uint32_t> id, order;
-    std::vector<float> u, v, shift, opacity;
-    Layer layer() const;
-  };
-  Layer layer(std::ptrdiff_t row, std::size_t rank);
   bool anything_seen(std::size_t row, std::size_t rank);
   bool find_appearances(std::size_t row, std::size_t rank, const Layer& here);
+  void find_opacities(std::size_t row, std::size_t rank, const Layer& here);
+  void look_up(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+               std::size_t count, Rgbx* out);
   void shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
                      std::size_t count, Rgbx* display, Rgbx* physical);
   void shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display, Rgbx* physical);
@@ -85,11 +79,13 @@ class LineShader {
   std::span<const std::uint8_t> one_each_;
   const Shading& shading_;
   const Kernel& kernel_;
-  std::size_t width_, height_;
-  std::array<Expanded, 3> expanded_;  ///< by row modulo 3
-  Expanded nothing_;                  ///< above the first and below the last line
+  Layers layers_;
+  bool see_through_;  ///< some appearance lets light through by itself
+  std::size_t width_;
   std::vector<std::uint32_t> appearance_;
   std::vector<float> transmittance_, weight_;
+  std::vector<float> opacity_;      ///< of a rank; only where see_through_
+  std::vector<Rgbx> clear_colors_;  ///< of a rank, what has alpha; only where see_through_
   std::array<std::array<float, kSegment>, 4> footprints_;
   std::array<Rgbx, kSegment> colors_;
 };

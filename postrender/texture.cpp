@@ -8,7 +8,7 @@ namespace nullcone::postrender {
 
 namespace {
 
-/// Area averages of `count` items (a `stride` apart) to `fewer` items, along one axis.
+/// Area averages of `from` items to `to` items, along one axis.
 struct Shrink {
   int from, to;
   template <class Read, class Write>
@@ -16,7 +16,7 @@ struct Shrink {
     const double ratio = static_cast<double>(from) / to;
     for (int i = 0; i < to; ++i) {
       const double first = i * ratio, last = std::min((i + 1) * ratio, static_cast<double>(from));
-      Rgb sum;
+      decltype(read(0)) sum{};
       for (int k = static_cast<int>(first); k < from && k < last; ++k) {
         const double weight = std::min(last, k + 1.0) - std::max(first, static_cast<double>(k));
         sum = sum + static_cast<float>(weight / ratio) * read(k);
@@ -26,20 +26,27 @@ struct Shrink {
   }
 };
 
-TextureLevel halved(const TextureLevel& full) {
-  const auto at = [](int i, int j, int width) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+/// One kind of values of a level (colours or alpha), half as wide and half as high.
+template <class T>
+std::vector<T> halved(const std::vector<T>& full, int width, int height) {
+  const int narrow = std::max(1, width / 2), low = std::max(1, height / 2);
+  const auto at = [](int i, int j, int w) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(w) + static_cast<std::size_t>(i);
   };
-  TextureLevel narrow{std::max(1, full.width / 2), full.height, {}};
-  narrow.texels.resize(at(0, narrow.height, narrow.width));
-  for (int j = 0; j < full.height; ++j)
-    Shrink{full.width, narrow.width}([&](int i) { return full.texel(i, j); },
-                                     [&](int i, Rgb c) { narrow.texels[at(i, j, narrow.width)] = c; });
-  TextureLevel half{narrow.width, std::max(1, full.height / 2), {}};
-  half.texels.resize(at(0, half.height, half.width));
-  for (int i = 0; i < half.width; ++i)
-    Shrink{full.height, half.height}([&](int j) { return narrow.texel(i, j); },
-                                     [&](int j, Rgb c) { half.texels[at(i, j, half.width)] = c; });
+  std::vector<T> columns(at(0, height, narrow)), out(at(0, low, narrow));
+  for (int j = 0; j < height; ++j)
+    Shrink{width, narrow}([&](int i) { return full[at(i, j, width)]; },
+                          [&](int i, T x) { columns[at(i, j, narrow)] = x; });
+  for (int i = 0; i < narrow; ++i)
+    Shrink{height, low}([&](int j) { return columns[at(i, j, narrow)]; },
+                        [&](int j, T x) { out[at(i, j, narrow)] = x; });
+  return out;
+}
+
+TextureLevel halved(const TextureLevel& full) {
+  TextureLevel half{std::max(1, full.width / 2), std::max(1, full.height / 2), {}};
+  half.texels = halved(full.texels, full.width, full.height);
+  if (!full.alpha.empty()) half.alpha = halved(full.alpha, full.width, full.height);
   return half;
 }
 
@@ -53,9 +60,10 @@ std::int16_t half_float(float x) {
   return static_cast<std::int16_t>(x < 0 ? half | 0x8000U : half);
 }
 
-/// Binary exponent that brings the largest component to [2^14, 2^15), the top of half floats.
+/// Binary exponent that brings the largest component (and an alpha of 1) to [2^14, 2^15), the top of half
+/// floats.
 int normalising_exponent(const TextureLevel& full) {
-  float largest = 0;
+  float largest = full.alpha.empty() ? 0.0f : 1.0f;
   for (const Rgb c : full.texels)
     for (const float component : {c.r, c.g, c.b})
       if (std::isfinite(component)) largest = std::max(largest, std::abs(component));
@@ -68,7 +76,9 @@ std::int32_t texels_a_row_of_tiles(const TextureLevel& level) {
   return (level.width + kTile - 1) / kTile * kTileTexels;
 }
 
-Texel half_floats(Rgb c) { return {half_float(c.r), half_float(c.g), half_float(c.b), 0}; }
+Texel half_floats(Rgb c, float alpha) {
+  return {half_float(c.r), half_float(c.g), half_float(c.b), half_float(alpha)};
+}
 
 /// What sticks out over the image by more than a texel is never read.
 void append_tiles(const TextureLevel& level, int exponent, std::vector<Texel>& texels) {
@@ -76,8 +86,11 @@ void append_tiles(const TextureLevel& level, int exponent, std::vector<Texel>& t
   for (int top = 0; top < level.height; top += kTile)
     for (int left = 0; left < level.width; left += kTile)
       for (int j = top; j < top + kTileRow; ++j)
-        for (int i = left; i < left + kTileRow; ++i)
-          texels.push_back(half_floats(scale * level.texel(i % level.width, std::min(j, level.height - 1))));
+        for (int i = left; i < left + kTileRow; ++i) {
+          const std::size_t at = level.place(i % level.width, std::min(j, level.height - 1));
+          texels.push_back(
+              half_floats(scale * level.texels[at], level.alpha.empty() ? 0.0f : scale * level.alpha[at]));
+        }
 }
 
 }  // namespace

@@ -15,19 +15,21 @@ namespace nullcone::postrender {
 /// v = 1 - (j + 1/2)/height.
 struct TextureLevel {
   int width = 0, height = 0;
-  std::vector<Rgb> texels;
+  std::vector<Rgb> texels;        ///< multiplied by alpha, so that averages do not bleed at edges
+  std::vector<float> alpha = {};  ///< empty: opaque
 
-  Rgb texel(int i, int j) const {
-    return texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(i)];
+  std::size_t place(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
   }
+  Rgb texel(int i, int j) const { return texels[place(i, j)]; }
 };
 
 /// An image and its halvings down to one texel, in linear light, by area averages, whatever the size (powers
 /// of two are not needed).
 std::vector<TextureLevel> halvings(TextureLevel full);
 
-/// Red, green, blue and an idle component, as half floats without infinities and subnormal numbers.
+/// Red, green, blue and alpha (0 where it is ignored), as half floats without infinities and subnormal
+/// numbers.
 using Texel = std::array<std::int16_t, 4>;
 
 /// Levels stand in tiles of 8 x 8 texels, so that a picture may run through them in any direction. Each tile
@@ -80,6 +82,7 @@ struct ImageTexture {
   std::shared_ptr<const Pyramid> image;
   UvTransform uv;
   bool mipmap = true;  ///< trilinear over the footprint's longer side; else bilinear in the full image
+  bool alpha = false;  ///< the image has alpha, which lets light through
   bool operator==(const ImageTexture&) const = default;
 };
 

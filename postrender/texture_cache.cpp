@@ -20,19 +20,20 @@ std::string stamp_of(const std::string& path) {
 
 }  // namespace
 
-std::shared_ptr<const Pyramid> TextureCache::get(const std::string& path, const std::string& pointer) {
+std::shared_ptr<const Pyramid> TextureCache::get(const std::string& path, const std::string& pointer,
+                                                 bool alpha) {
   const std::string stamp = stamp_of(path);
-  if (const auto found = entries_.find(path);
+  if (const auto found = entries_.find({path, alpha});
       found != entries_.end() && found->second.stamp == stamp && !stamp.empty())
     return found->second.image;
-  auto image = std::make_shared<const Pyramid>(make_pyramid(read_texture(path, pointer)));
-  entries_[path] = {stamp, image};
+  auto image = std::make_shared<const Pyramid>(make_pyramid(read_texture(path, pointer, alpha)));
+  entries_[{path, alpha}] = {stamp, image};
   return image;
 }
 
 void TextureCache::prune(std::size_t most_bytes) {
   std::size_t sum = 0;
-  for (const auto& [path, entry] : entries_) sum += entry.image->bytes();
+  for (const auto& [name, entry] : entries_) sum += entry.image->bytes();
   for (auto entry = entries_.begin(); entry != entries_.end() && sum > most_bytes;) {
     const bool unused = entry->second.image.use_count() == 1;
     if (unused) sum -= entry->second.image->bytes();

@@ -4,16 +4,18 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "postrender/texture.h"
 
 namespace nullcone::postrender {
 
-/// Keeps textures by path, and reads a file again when its time or size has changed.
+/// Keeps textures by path (with and without their alpha), and reads a file again when its time or size has
+/// changed.
 class TextureCache {
  public:
   /// Throws InputError as read_texture() does.
-  std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer);
+  std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer, bool alpha);
 
   /// Forgets textures that nobody else holds, while they take more than `most_bytes` together.
   void prune(std::size_t most_bytes = std::size_t{1} << 30);
@@ -23,7 +25,7 @@ class TextureCache {
     std::string stamp;  ///< time and size of the file
     std::shared_ptr<const Pyramid> image;
   };
-  std::map<std::string, Entry> entries_;
+  std::map<std::pair<std::string, bool>, Entry> entries_;
 };
 
 }  // namespace nullcone::postrender

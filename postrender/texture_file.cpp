@@ -110,6 +110,19 @@ std::vector<Rgb> read_linear(ImageInput& in, const Place& place) {
   }
 }
 
+/// Sets the level's alpha from the picture's, and multiplies the colours by it if they are not yet.
+void read_alpha(ImageInput& in, const Place& place, bool multiplied, TextureLevel& out) {
+  const int channel = in.spec().alpha_channel;
+  if (channel < 0) place.refuse("has no alpha channel; expected one, because the look says \"alpha\": true");
+  out.alpha.resize(out.texels.size());
+  if (!in.read_image(0, 0, channel, channel + 1, TypeDesc::FLOAT, out.alpha.data()) || in.has_error())
+    place.refuse("cannot be read whole: " + in.geterror());
+  for (std::size_t i = 0; i < out.texels.size(); ++i) {
+    out.alpha[i] = out.alpha[i] > 0 ? std::min(out.alpha[i], 1.0f) : 0.0f;
+    if (!multiplied) out.texels[i] = out.alpha[i] * out.texels[i];
+  }
+}
+
 /// libjpeg fills what is missing with grey and only warns, so look for the marker that ends every JPEG
 /// stream.
 void check_jpeg_end(const Place& place) {
@@ -138,18 +151,19 @@ void check_png_end(const Place& place) {
 
 }  // namespace
 
-TextureLevel read_texture(const std::string& path, const std::string& pointer) {
+TextureLevel read_texture(const std::string& path, const std::string& pointer, bool alpha) {
   const Place place{path, pointer};
   const std::string format = format_of(place);
   if (format == "jpeg") check_jpeg_end(place);
   if (format == "png") check_png_end(place);
   const std::unique_ptr<ImageInput> in = ImageInput::create(format);
   ImageSpec spec, options;
-  options.attribute("oiio:UnassociatedAlpha", 1);  // colours stay as stored: alpha is ignored
+  options.attribute("oiio:UnassociatedAlpha", 1);  // colours stay as stored
   if (!in) place.refuse("this build of OpenImageIO cannot read " + format);
   if (!in->open(path, spec, options)) place.refuse("cannot be read: " + in->geterror());
   check_size(spec, place);
   TextureLevel out{spec.width, spec.height, read_linear(*in, place)};
+  if (alpha) read_alpha(*in, place, format == "openexr", out);
   in->close();
   return out;
 }

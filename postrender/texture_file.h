@@ -11,9 +11,11 @@ inline constexpr int kLargestTextureSide = 32768;
 inline constexpr std::size_t kLargestTextureBytes = std::size_t{1} << 30;  ///< of linear floats, 12 a texel
 
 /// Reads JPEG, PNG, TIFF, OpenEXR or Radiance HDR, told apart by their first bytes, never by the name. 8 and
-/// 16 bit images are decoded from sRGB, float images are taken as linear. Grey is spread, alpha is ignored.
-/// `pointer` ("/objects/earth/texture/file") stands in complaints. Throws InputError "file: pointer: ..." for
-/// whatever is not such a picture, is cut off, or is larger than the limits above.
-TextureLevel read_texture(const std::string& path, const std::string& pointer);
+/// 16 bit images are decoded from sRGB, float images are taken as linear. Grey is spread. Without `alpha` the
+/// picture's own is ignored; with it, it is taken as straight, but for OpenEXR, whose colours are multiplied
+/// by it already, and a picture that has none is refused. `pointer` ("/objects/earth/texture/file") stands in
+/// complaints. Throws InputError "file: pointer: ..." for whatever is not such a picture, is cut off, or is
+/// larger than the limits above.
+TextureLevel read_texture(const std::string& path, const std::string& pointer, bool alpha = false);
 
 }  // namespace nullcone::postrender

@@ -11,6 +11,16 @@
 namespace nullcone::test {
 namespace {
 
+/// The same scene with everything transparent, all crossings and all their details.
+json in_full(json scene, int width, int height) {
+  for (json& object : scene["objects"])
+    if (object["shape"]["type"] != "sky") object["transparent"] = true;
+  scene["camera"]["resolution"] = {width, height};
+  scene["records"] = {{"differentials", true},
+                      {"channels", {"order", "uv", "shift", "t", "tau", "mu", "N", "K", "P"}}};
+  return scene;
+}
+
 /// Scenes that use every placing and shape, smaller than life.
 std::vector<std::string> scenes() {
   json earth = json::parse(std::ifstream(NULLCONE_SOURCE "/scenes/goedel_earth.json"));
@@ -54,12 +64,15 @@ std::vector<std::string> scenes() {
     if (kSanitized) out["camera"]["resolution"] = {width, height};
     return out.dump();
   };
-  return {earth.dump(),
-          moving,
-          resting,
-          smaller(hole, 27, 21),
-          smaller(wormhole, 19, 15),
-          smaller(spheres.dump(), 24, 13)};
+  std::vector<std::string> out = {earth.dump(),
+                                  moving,
+                                  resting,
+                                  smaller(hole, 27, 21),
+                                  smaller(wormhole, 19, 15),
+                                  smaller(spheres.dump(), 24, 13)};
+  for (const json& scene : {earth, json::parse(moving), json::parse(resting), json::parse(hole), spheres})
+    out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
+  return out;
 }
 
 /// All channels of hits and rays, in full precision, of a picture that is traced in bands of `lines` scan
@@ -68,11 +81,12 @@ std::vector<double> numbers(const std::string& text, std::string_view isa, int l
   const auto metrics = metric_descriptions();
   Scene scene = read_scene(text, "test", metrics);
   const auto tracer = prepare_scene(find_spacetime(scene.metric, isa), scene, "test");
-  std::vector<double> of_hits, of_rays;
+  std::vector<double> of_hits, of_details, of_rays;
   const auto width = static_cast<std::size_t>(scene.camera.width);
   for (int line = 0; line < scene.camera.height; line += lines) {
     const int count = std::min(lines, scene.camera.height - line);
     Gathering sink;
+    sink.with_details = (scene.records.channels & kDetailChannels).bits != 0;
     std::vector<RayRecord> rays(width * static_cast<std::size_t>(count));
     tracer->trace_band(line, count, {sink, rays});
     for (const HitRecord& h : sink.hits) {
@@ -80,10 +94,15 @@ std::vector<double> numbers(const std::string& text, std::string_view isa, int l
       of_hits.insert(of_hits.end(), {pixel, static_cast<double>(h.id), static_cast<double>(h.order), h.Z, h.u,
                                      h.v, h.shift, h.t, h.tau, h.mu});
     }
+    for (const HitDetail& d : sink.details) {
+      of_details.insert(of_details.end(), d.duv.begin(), d.duv.end());
+      for (const Triple& X : {d.N, d.K, d.P}) of_details.insert(of_details.end(), X.begin(), X.end());
+    }
     for (const RayRecord& r : rays)
       of_rays.insert(of_rays.end(), {static_cast<double>(r.status), static_cast<double>(r.steps),
                                      double(r.error), double(r.drift)});
   }
+  of_hits.insert(of_hits.end(), of_details.begin(), of_details.end());
   of_hits.insert(of_hits.end(), of_rays.begin(), of_rays.end());
   return of_hits;
 }

@@ -75,6 +75,10 @@ template <class S, std::size_t N>
 Vec<S, N> normalised(const Vec<S, N>& a) {
   return (S(1.0) / norm(a)) * a;
 }
+template <class S, std::size_t N>
+Vec<S, N> select(const Mask<S>& choose, const Vec<S, N>& a, const Vec<S, N>& b) {
+  return Vec<S, N>::map([&](std::size_t i) { return select(choose, a[i], b[i]); });
+}
 /// The spatial part of an event or a 4-vector.
 template <class S>
 Vec3<S> spatial(const Vec4<S>& x) {

@@ -45,7 +45,7 @@ class DatasetWriter {
 /// numbers are not verified against their fingerprints (see verify_file()).
 class DatasetReader {
  public:
-  /// `wanted`: the channels that shall be read; those that the file does not have are left out.
+  /// `wanted`: the channels that shall be read (and `id`); those that the file does not have are left out.
   explicit DatasetReader(const std::string& path, ChannelSet wanted = kAllChannels);
   ~DatasetReader();
   DatasetReader(const DatasetReader&) = delete;

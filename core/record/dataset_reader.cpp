@@ -96,7 +96,7 @@ struct DatasetReader::Impl {
     guarded(path, [&] {
       manifest = manifest_of(*file, path);
       size = std::filesystem::file_size(path);
-      channels = manifest.channels & wanted;
+      channels = manifest.channels & (wanted | ChannelSet::of("id"));  // OpenEXR wants something to read
       const int deep = find_part(*file, exr::hits_part, path), flat = find_part(*file, exr::rays_part, path);
       check_window(file->header(deep), exr::window_of(manifest, 0, manifest.lines), path);
       check_window(file->header(flat), exr::window_of(manifest, 0, manifest.lines, manifest.samples), path);

@@ -24,6 +24,7 @@ struct MetricDescription {
   std::vector<MetricParameter> parameters;
   int skies = 0;  ///< how many infinities hold a sky
   bool closed_paths = false;
+  bool stationary = true;  ///< nothing in it changes with time
 };
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0

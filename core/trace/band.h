@@ -62,14 +62,43 @@ struct Group {
   Vec4<S> load_k(const BandRays& rays) const {
     return Vec4<S>::map([&](std::size_t c) { return load(rays.k[c]); });
   }
+  /// f(i) of each ray i.
+  template <class F>
+  S gather(F&& f) const {
+    std::array<double, kWidth> values{};
+    for (std::size_t lane = 0; lane < kWidth; ++lane) values[lane] = f(ray[lane]);
+    return Lanes<S>::load(values.data());
+  }
+};
+
+/// The rays of a band as the camera sends them into the past.
+struct CameraRays {
+  Camera camera;
+  Vec4<double> u;  ///< the camera's 4-velocity, in the static tetrad
+  int first_line = 0;
+
+  /// The tangent, in the static tetrad, of the ray through picture coordinates (x, y).
+  template <class S>
+  Vec4<S> past(const S& x, const S& y) const {
+    return -seen_photon(convert<S>(u), look_direction(camera, x, y));
+  }
+  /// The tangents of rays at a part `h` of a pixel beside those of some rays of the band: to the right, to
+  /// the left, down, up.
+  template <class S, class F>
+  std::array<Vec4<S>, 4> beside(const Group<S>& group, double h, F&& ray_of) const {
+    const auto width = static_cast<std::size_t>(camera.width);
+    const S x = group.gather([&](std::size_t i) { return static_cast<double>(ray_of(i) % width) + 0.5; });
+    const S y = group.gather(
+        [&](std::size_t i) { return static_cast<double>(ray_of(i) / width) + (first_line + 0.5); });
+    return {past<S>(x + S(h), y), past<S>(x - S(h), y), past<S>(x, y + S(h)), past<S>(x, y - S(h))};
+  }
 };
 
 /// Camera rays of a band: the photon that arrives at each pixel, followed into the past.
 template <class S>
-void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, double lookback,
-         BandRays& rays) {
-  const Vec4<S> u = convert<S>(u_camera);
-  int column = 0, line = first_line;  // of the next ray; the last ray is repeated to fill the last pack
+void aim(const CameraRays& from, double lookback, BandRays& rays) {
+  const Camera& camera = from.camera;
+  int column = 0, line = from.first_line;  // of the next ray; the last ray is repeated to fill the last pack
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
     std::array<double, Lanes<S>::count> x{}, y{};
     for (std::size_t lane = 0; lane < x.size(); ++lane) {
@@ -77,8 +106,7 @@ void aim(const Camera& camera, const Vec4<double>& u_camera, int first_line, dou
       y[lane] = line + 0.5;
       if (i + lane + 1 < rays.count && ++column == camera.width) column = 0, ++line;
     }
-    const Vec3<S> look = look_direction(camera, Lanes<S>::load(x.data()), Lanes<S>::load(y.data()));
-    const Vec4<S> past = -seen_photon(u, look);
+    const Vec4<S> past = from.past<S>(Lanes<S>::load(x.data()), Lanes<S>::load(y.data()));
     for (std::size_t c = 0; c < 4; ++c) Lanes<S>::store(past[c], rays.k[c] + i);
     Lanes<S>::store(S(lookback), rays.limit + i);
     Lanes<S>::store(S(0.0), rays.steps + i);

@@ -1,31 +1,33 @@
 // A scene traced along closed-form paths: one object after the other, exact windows and bounds.
 #pragma once
 
-#include "core/trace/closed_search.h"
+#include "core/trace/closed_onward.h"
+#include "core/trace/details.h"
 #include "core/trace/hamilton.h"
 #include "core/trace/objects.h"
 
 NULLCONE_KERNEL_BEGIN
 
-/// The shape and placing of an object, resolved to types once.
+/// The shape and placing of an object, resolved to types once. `margin`: how much larger than the shape the
+/// ball is outside of which the search does not look.
 template <Metric M, class Shape>
-AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape) {
-  const double ball = shape.bounding_radius();
+AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape, double margin) {
+  const double ball = shape.bounding_radius(), wide = margin * ball;
   const Vec4<double> event{placing.worldline.event};
   const Matrix3<double> axes = axes_of(placing);
   if (placing.type == PlacingType::coordinate)
     return Placed<RestPlacing<M>, ChartBody<M>, Shape>{
-        {metric, event, false, axes, ball}, {metric, event, axes}, shape};
+        {metric, event, false, axes, wide}, {metric, event, axes}, shape};
 
   if (placing.worldline.is_static() && !placing.gyroscope_axes)
-    return Placed<RestPlacing<M>, RestBody, Shape>{{metric, event, true, axes, ball}, {axes}, shape};
+    return Placed<RestPlacing<M>, RestBody, Shape>{{metric, event, true, axes, wide}, {axes}, shape};
 
   // The frame of an object at rest stands in its own chart, at the origin.
   const bool rests = placing.worldline.is_static() && Shape::isotropic;
   const LocalBody<M> body = local_body(metric, rests ? Vec4<double>{} : event, placing, ball);
   if constexpr (Shape::isotropic)
     if (rests)
-      return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, ball}, body, shape};
+      return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, wide}, body, shape};
   return Placed<MovingPlacing<M>, LocalBody<M>, Shape>{
       {body.frame, body.orbit, Shape::isotropic}, body, shape};
 }
@@ -35,30 +37,31 @@ class ClosedTracer final : public Tracer {
  public:
   ClosedTracer(const M& metric, const Scene& scene)
       : metric_(metric),
-        camera_(scene.camera),
+        rules_(scene),
+        wanted_(scene.records.channels),
+        camera_{scene.camera, four_velocity(Vec3<double>{scene.observer.velocity})},
         observation_{scene.observer.event},
-        u_camera_(four_velocity(Vec3<double>{scene.observer.velocity})),
         lookback_(scene.max_lookback),
-        count_(scene.objects.size()),
-        objects_(new AnyPlaced<M>[count_]),
-        origins_(new double[count_]) {
+        objects_(new AnyPlaced<M>[rules_.objects]),
+        clocks_(new Clock[rules_.objects]) {
     resolution_ = 4e-15 * norm(spatial(observation_));
   }
 
   /// Makes the objects ready; false, with the reason, for the first that cannot be traced.
   bool place_objects(const Scene& scene, Unfit& unfit) {
-    for (std::size_t i = 0; i < count_; ++i) {
+    // Where rays go on behind a surface, rounding must not carry them past the ball before they have left.
+    const double margin = rules_.onward ? 1.001 : 1;
+    for (std::size_t i = 0; i < rules_.objects; ++i) {
       const Object& object = scene.objects[i];
       unfit.object = i;
-      origins_[i] = observation_[0] - object.placing.worldline.event[0];
-      if (object.shape.type == ShapeType::sky) {
-        sky_ = static_cast<std::uint32_t>(i + 1);
-        continue;
-      }
+      double rate = 1;
       if (object.placing.type == PlacingType::local)
-        origins_[i] /= metric_.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
+        rate = metric_.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
+      clocks_[i] = clock_of<M>(object.placing, (observation_[0] - object.placing.worldline.event[0]) / rate);
+      if (object.shape.type == ShapeType::sky) continue;
+      const Placing placing = from_observation<M>(object.placing, observation_[0]);
       objects_[i] =
-          with_shape(object.shape, [&](const auto& shape) { return place(metric_, object.placing, shape); });
+          with_shape(object.shape, [&](const auto& shape) { return place(metric_, placing, shape, margin); });
       if (!with_type(objects_[i], [&](const auto& placed) { return check(placed, object.shape, unfit); }))
         return false;
     }
@@ -66,19 +69,17 @@ class ClosedTracer final : public Tracer {
   }
 
   void trace_band(int first_line, int lines, const BandRoom& room) const override {
-    const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera_.width);
-    BandRays rays(pixels);
-    aim<Wide>(camera_, u_camera_, first_line, lookback_, rays);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const auto number = static_cast<std::uint32_t>(i + 1);
-      if (number == sky_) continue;
-      with_type(objects_[i],
-                [&](const auto& placed) { search<Wide>(placed, number, observation_, resolution_, rays); });
-    }
-    write(rays, room);
+    CameraRays camera = camera_;
+    camera.first_line = first_line;
+    BandRays rays(static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera.camera.width));
+    aim<Wide>(camera, lookback_, rays);
+    for_each_object(true, [&](const auto& placed, std::uint32_t number) {
+      search<Wide>(placed, number, observation_, resolution_, rays);
+    });
+    write(camera, rays, find_crossings(rays), room);
   }
 
-  double tau_origin(std::size_t object) const override { return origins_[object]; }
+  double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
   double distortion(std::size_t) const override { return 0; }
 
  private:
@@ -91,59 +92,125 @@ class ClosedTracer final : public Tracer {
         return false;
       }
     const auto launch = placed.placing.launch(observation_);
-    const Vec4<double> observer = placed.placing.path(launch, u_camera_).at(0.0).event;
+    const Vec4<double> observer = placed.placing.path(launch, camera_.u).at(0.0).event;
     unfit.reason = fault_of(metric_, placed.body, placed.shape, shape, observer);
     return unfit.reason == nullptr;
   }
 
-  void write(BandRays& rays, const BandRoom& room) const {
-    const std::unique_ptr<Status[]> status(new Status[rays.count]);
-    for (std::size_t i = 0; i < rays.count; ++i) {
-      status[i] = lookback_ < kFar ? Status::lookback_reached : Status::sky;
-      if (rays.nearest[i] != 0)
-        status[i] = Status::hit;
-      else if (status[i] == Status::sky)
-        rays.nearest[i] = sky_;
+  /// f(placed, number) for the objects at which rays end, or for the others.
+  template <class F>
+  void for_each_object(bool ends_rays, F&& f) const {
+    for (std::uint32_t number = 1; number <= rules_.objects; ++number)
+      if (!rules_.is_sky(number) && rules_.ends_rays(number) == ends_rays)
+        with_type(objects_[number - 1], [&](const auto& placed) { f(placed, number); });
+  }
+
+  /// All crossings, ray by ray: the nearest with an opaque surface, which is known already, what lies before
+  /// it, and the sky behind.
+  Pool<Crossing> find_crossings(BandRays& rays) const {
+    const auto add_ends = [&](Pool<Crossing>& found) {
+      for (std::uint32_t i = 0; i < rays.count; ++i)
+        if (rays.nearest[i] != 0)
+          found.push({i, rays.nearest[i], rays.limit[i]});
+        else if (!(lookback_ < kFar) && rules_.sky[0] != 0)
+          found.push({i, rules_.sky[0], rays.limit[i]});
+    };
+    if (!rules_.onward) {
+      Pool<Crossing> found(rays.count);
+      add_ends(found);
+      return found;
     }
-    const auto record_object = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
-                                   const std::uint32_t* place, HitRecord* hits) {
+    Onwards onwards(rays);
+    for_each_object(false, [&](const auto& placed, std::uint32_t number) {
+      search_onward<Wide>(placed, number, observation_, resolution_, rays, onwards);
+    });
+    add_ends(onwards.found);
+    return by_ray(onwards.found, rays.count);
+  }
+
+  void write(const CameraRays& camera, const BandRays& rays, const Pool<Crossing>& crossings,
+             const BandRoom& room) const {
+    const std::unique_ptr<Status[]> status(new Status[rays.count]);
+    for (std::size_t i = 0; i < rays.count; ++i)
+      status[i] = lookback_ < kFar ? Status::lookback_reached : Status::sky;
+    const auto record_objects = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
+                                    const HitRoom& to) {
       with_type(objects_[number - 1], [&](const auto& placed) {
-        for (std::size_t i = 0; i < listed; i += Lanes<Wide>::count) {
-          const Group<Wide> group(list, i, listed);
-          scatter(record(placed, group.load_k(rays), group.load(rays.limit)), group, number, observation_[0],
-                  origins_[number - 1], place, hits);
-        }
+        for (std::size_t i = 0; i < listed; i += Lanes<Wide>::count)
+          record(placed, camera, rays, crossings, Group<Wide>(list, i, listed), to);
       });
     };
-    const auto record_sky = [&](std::size_t i, std::uint32_t number) {
-      return sky_record({{rays.k[1][i], rays.k[2][i], rays.k[3][i]}}, -1 / rays.k[0][i], number);
+    const auto record_sky = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
+                                const HitRoom& to) {
+      for (std::size_t n = 0; n < listed; ++n) {
+        const std::size_t i = list[n], ray = crossings[i].ray;
+        const Vec3<double> direction = {{rays.k[1][ray], rays.k[2][ray], rays.k[3][ray]}};
+        to.hits[i] = sky_record(direction, -1 / rays.k[0][ray], number);
+        if (to.details && wanted_.any()) to.details[i] = detail_of_sky(camera, ray, direction);
+      }
     };
-    const HitRoom to = room.hits.extend(rays.count);
-    room.hits.keep(write_records({rays.count, rays.nearest.get(), status.get()},
-                                 static_cast<std::uint32_t>(count_), 0, to.hits, record_object, record_sky));
+    const HitRoom to = room.hits.extend(crossings.size());
+    room.hits.keep(write_records(crossings, rules_, 0, to, status.get(), record_objects, record_sky));
     for (std::size_t i = 0; i < rays.count; ++i)
       room.rays[i] = {static_cast<std::uint32_t>(rays.doubtful[i] ? Status::step_limit : status[i]),
                       static_cast<std::uint32_t>(rays.steps[i]), 0.0F, 0.0F};
   }
 
+  /// Writes the records of a group of crossings with one object, and what else is asked for.
   template <class P>
-  Recorded<Wide> record(const P& placed, const Vec4<Wide>& past, const Wide& found) const {
+  void record(const P& placed, const CameraRays& camera, const BandRays& rays,
+              const Pool<Crossing>& crossings, const Group<Wide>& group, const HitRoom& to) const {
+    const auto ray_of = [&](std::size_t i) -> std::size_t { return crossings[i].ray; };
+    const auto past = Vec4<Wide>::map(
+        [&](std::size_t c) { return group.gather([&](std::size_t i) { return rays.k[c][ray_of(i)]; }); });
     const auto& placing = placed.placing;
-    const auto path = placing.path(placing.launch(observation_), past);
-    Recorded<Wide> out = record_crossing(metric_, path, placed.body, placed.shape, found,
-                                         [&](const Vec4<Wide>& event) { return placing.time(event); });
-    out.order = metric_.caustics(-(past[0] * out.Z), past[3] / past[0]);
-    return out;
+    const auto launch = placing.launch(observation_);
+    const auto path = placing.path(launch, past);
+    Crossed<Wide> crossed =
+        record_crossing(metric_, path, placed.body, placed.shape,
+                        group.gather([&](std::size_t i) { return crossings[i].lambda; }),
+                        [&](const Vec4<Wide>& event) { return placing.scene_event(event); });
+    crossed.record.order = metric_.caustics(-(past[0] * crossed.record.Z), past[3] / past[0]);
+    const std::uint32_t number = crossings[group.ray[0]].number;
+    scatter(crossed.record, group, number, observation_[0], clocks_[number - 1].origin, to.hits);
+    if (!to.details || !wanted_.any()) return;
+
+    Detailed<Wide> detailed;
+    if (wanted_.directions) {
+      find_directions(crossed, placed.body, placed.shape, detailed);
+      detailed.P = spatial(crossed.emitted - convert<Wide>(observation_));
+    }
+    if (wanted_.duv) {
+      const auto beside = camera.beside(group, kBeside, ray_of);
+      const auto event = [&](std::size_t i) {
+        return placing.path(launch, beside[i]).at(crossed.here.lambda).event;
+      };
+      const Wide scale(0.5 / kBeside);
+      detailed.duv = change_of_uv(crossed, placed.body, placed.shape,
+                                  {scale * (event(0) - event(1)), scale * (event(2) - event(3))});
+    }
+    scatter(detailed, group, to.details);
   }
 
+  HitDetail detail_of_sky(const CameraRays& camera, std::size_t ray, const Vec3<double>& direction) const {
+    const auto list = static_cast<std::uint32_t>(ray);
+    const auto beside = camera.beside(Group<double>(&list, 0, 1), kBeside, [](std::size_t i) { return i; });
+    const double scale = 0.5 / kBeside;
+    return sky_detail(direction,
+                      {scale * spatial(beside[0] - beside[1]), scale * spatial(beside[2] - beside[3])});
+  }
+
+  /// Part of a pixel by which neighbouring rays stand aside: differences are good to its square.
+  static constexpr double kBeside = 0.0625;
+
   M metric_;
-  Camera camera_;
-  Vec4<double> observation_, u_camera_;
+  RecordRules rules_;
+  Wanted wanted_;
+  CameraRays camera_;
+  Vec4<double> observation_;
   double lookback_;
-  std::size_t count_;
   std::unique_ptr<AnyPlaced<M>[]> objects_;
-  std::unique_ptr<double[]> origins_;
-  std::uint32_t sky_ = 0;
+  std::unique_ptr<Clock[]> clocks_;
   double resolution_ = 0;
 };
 

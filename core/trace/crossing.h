@@ -51,6 +51,17 @@ void advance(const Ray& ray, const Shape& shape, const S& limit, const S& resolu
   }
 }
 
+/// A shape for rays that go on behind it, and which of them are inside.
+template <class S, class Shape>
+struct Onward {
+  const Shape& shape;
+  Mask<S> inside;
+
+  S safe_step(const Sight<S>& ray, const S& rounding) const {
+    return shape.onward_step(ray, rounding, inside);
+  }
+};
+
 /// The whole search at once.
 template <class S, class Ray, class Shape>
 Search<S> first_crossing(const Ray& ray, const Shape& shape, const S& limit, const S& resolution) {

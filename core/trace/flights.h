@@ -16,13 +16,15 @@ struct Flights {
   std::unique_ptr<double[]> memory;
   std::array<double*, 8> y{}, y1{};  ///< y1: end of the step that waits to be looked at
   double *lambda, *h, *growth, *steps, *error, *length, *delta;
+  std::array<double*, 3> axis{};  ///< about which turns are counted (turns.h)
+  double* turns;                  ///< so far, where the ray stands
   std::unique_ptr<std::uint32_t[]> object, list, waiting;
   std::unique_ptr<Status[]> status;
   std::size_t listed = 0, waits = 0;
 
   explicit Flights(std::size_t rays)
       : count(rays),
-        memory(new double[23 * rays]()),
+        memory(new double[27 * rays]()),
         object(new std::uint32_t[rays]()),
         list(new std::uint32_t[rays]),
         waiting(new std::uint32_t[rays]),
@@ -31,7 +33,8 @@ struct Flights {
     const auto column = [&] { return std::exchange(next, next + rays); };
     for (std::size_t i = 0; i < 8; ++i) y[i] = column(), y1[i] = column();
     lambda = column(), h = column(), growth = column(), steps = column(), error = column(), length = column(),
-    delta = column();
+    delta = column(), turns = column();
+    for (double*& component : axis) component = column();
   }
 };
 

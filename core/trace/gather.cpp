@@ -59,8 +59,9 @@ void add_hit(const HitRecord& hit, std::uint32_t sample, float opacity, Hits& hi
   hits.mu.push_back(to_float(hit.mu));
 }
 
-void add_detail(const HitDetail& detail, Hits& hits) {
-  for (std::size_t i = 0; i < 4; ++i) hits.duv[i].push_back(to_float(detail.duv[i]));
+/// Kernels know samples alone: changes from one to the next are 1/samples of those from pixel to pixel.
+void add_detail(const HitDetail& detail, int samples, Hits& hits) {
+  for (std::size_t i = 0; i < 4; ++i) hits.duv[i].push_back(to_float(samples * detail.duv[i]));
   for (std::size_t i = 0; i < 3; ++i) {
     hits.N[i].push_back(to_float(detail.N[i]));
     hits.K[i].push_back(to_float(detail.K[i]));
@@ -112,7 +113,7 @@ Band gather(const TracedBand& band, const Scene& scene) {
   for (std::size_t i = 0; i < band.rays.size() / samples; ++i) {
     by_pixel.for_each(i % width, i / width, [&](std::size_t hit, std::uint32_t sample) {
       add_hit(band.hits[hit], sample, to_float(scene.objects[band.hits[hit].id - 1].opacity), out.hits);
-      if (!band.details.empty()) add_detail(band.details[hit], out.hits);
+      if (!band.details.empty()) add_detail(band.details[hit], camera.samples, out.hits);
     });
     out.hits.offset.push_back(out.hits.Z.size());
   }

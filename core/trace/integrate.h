@@ -15,10 +15,6 @@ template <class S>
 State<S> to_state(const Phase<S>& at) {
   return {{at.x[0], at.x[1], at.x[2], at.x[3], at.p[0], at.p[1], at.p[2], at.p[3]}};
 }
-template <class S, std::size_t N>
-Vec<S, N> select(const Mask<S>& choose, const Vec<S, N>& a, const Vec<S, N>& b) {
-  return Vec<S, N>::map([&](std::size_t i) { return select(choose, a[i], b[i]); });
-}
 
 /// Hamilton's equations as Odeint calls them.
 template <Metric M>

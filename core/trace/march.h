@@ -3,38 +3,9 @@
 // nothing but the ray.
 #pragma once
 
-#include "core/trace/curve.h"
-#include "core/trace/flights.h"
-#include "core/trace/integrate.h"
-#include "core/trace/march_object.h"
+#include "core/trace/march_onward.h"
 
 NULLCONE_KERNEL_BEGIN
-
-/// All that a march needs to know; the same for every ray.
-template <Metric M>
-struct MarchSetting {
-  HamiltonSystem<M> system;
-  Accuracy accuracy;
-  double lookback;
-  const MarchObject<M>* objects;
-  std::size_t count;
-  std::array<std::uint32_t, 2> sky;  ///< numbers of the skies' objects, 0 for none
-  double reach;   ///< coordinates of every object lie within this distance of the origin …
-  double inside;  ///< … and farther than this from it
-};
-
-/// How a ray that stands at y ends, as a number of the scalar; `none` if it goes on. A ray may not escape
-/// before it has passed all objects.
-template <Metric M, class S>
-S ending_of(const MarchSetting<M>& setting, const State<S>& y, const State<S>& dy) {
-  const Phase<S> at = to_phase(y);
-  const S end = ending(setting.system.metric, at, to_phase(dy), setting.accuracy.rtol);
-  const S distance2 = dot(spatial(at.x), spatial(at.x));
-  const auto too_early =
-      ((end == as_scalar<S>(Ending::sky)) & (distance2 < S(setting.reach * setting.reach))) |
-      ((end == as_scalar<S>(Ending::second_sky)) & (distance2 > S(setting.inside * setting.inside)));
-  return select(too_early, S(0.0), end);
-}
 
 /// One ray has ended.
 template <Metric M>
@@ -57,8 +28,9 @@ struct Marching {
   S length = S(0.0);
   S end = S(0.0);  ///< an Ending
   Mask<S> active, near, given_up, broken;
+  Turning<S> turning;
 
-  explicit Marching(const Flight<S>& from) : flight(from), y1(from.y) {
+  Marching(const Flight<S>& from, const Turning<S>& turned) : flight(from), y1(from.y), turning(turned) {
     active = from.lambda == from.lambda;
     near = given_up = broken = active & !active;
   }
@@ -97,6 +69,8 @@ void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) 
   flight.dy = select(moves, a.dy1, flight.dy);
   flight.lambda = select(moves, flight.lambda + a.h, flight.lambda);
   m.end = select(moves, ending_of(setting, flight.y, flight.dy), m.end);
+  if constexpr (is_central<M>())
+    m.turning.turns = select(moves, m.turning.at(spatial(to_phase(flight.y).x)), m.turning.turns);
   m.broken = m.broken | (stuck & !a.finite);
   m.given_up = m.given_up | stuck | (m.active & (flight.steps >= S(kStepLimit)) & !near);
   m.active = m.active & !near & !m.given_up & (m.end == S(0.0)) & (flight.lambda < limit);
@@ -112,6 +86,7 @@ void store(const Group<S>& group, const Marching<S>& m, const Flights& flights) 
   group.store(m.flight.steps, flights.steps);
   group.store(m.flight.error, flights.error);
   group.store(m.length, flights.length);
+  group.store(m.turning.turns, flights.turns);
 }
 
 /// Takes a group of rays up to `rounds` attempts further. Those that go on are listed again, from `left` on;
@@ -121,7 +96,7 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
                    Flights& flights, std::size_t& left) {
   Flight<S> flight = load_flight(group, flights);
   flight.dy = setting.system.rate(flight.y);
-  Marching<S> m(flight);
+  Marching<S> m(flight, load_turning(group, flights));
   for (int i = 0; i < rounds && any(m.active); ++i) try_step(stepper, setting, m);
   store(group, m, flights);
   std::array<bool, Group<S>::kWidth> active{}, near{}, given_up{}, broken{};
@@ -145,56 +120,15 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
   }
 }
 
-/// Evenly spaced states of a step, both ends included, and their rates.
-template <class S, std::size_t n>
-struct StepStates {
-  std::array<Phase<S>, n> at, rate;
-
-  template <class Stepper, Metric M>
-  StepStates(Stepper& stepper, const HamiltonSystem<M>& system, const State<S>& y, const State<S>& y1,
-             const S& length) {
-    const State<S> dy = system.rate(y);
-    at[0] = to_phase(y), rate[0] = to_phase(dy);
-    for (std::size_t k = 1; k < n; ++k) {
-      const S part(static_cast<double>(k) / (n - 1));
-      const State<S> here = k + 1 == n ? y1 : stepper.move(system, y, dy, part * length);
-      at[k] = to_phase(here), rate[k] = to_phase(system.rate(here));
-    }
-  }
-};
-
-/// What a close look at a step finds.
-template <class S>
-struct Look {
-  S delta, number;  ///< where an object is met, and its place in the list
-  Mask<S> met, lost;
-  S end;  ///< an Ending, at the end of the step
-};
-
-/// Looks closely at the waiting steps of a group: where do they first meet an object?
-template <class Stepper, Metric M, class S>
-Look<S> look_closely(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>& group,
-                     const Flights& flights) {
-  constexpr std::size_t n = Stepper::kOrder > 6 ? 4 : 3;
-  const S length = group.load(flights.length);
-  const State<S> y1 = load(group, flights.y1);
-  const StepStates<S, n> step(stepper, setting.system, load(group, flights.y), y1, length);
-  Look<S> out{length, S(0.0), length != length, length != length,
-              ending_of(setting, y1, to_state(step.rate[n - 1]))};
-  for (std::size_t i = 0; i < setting.count; ++i) {
-    const Search<S> search = setting.objects[i].first_crossing(step.at, step.rate, length, out.delta);
-    out.delta = select(search.met, search.lambda, out.delta);
-    out.number = select(search.met, S(static_cast<double>(i)), out.number);
-    out.met = out.met | search.met;
-    out.lost = out.lost | search.given_up;
-  }
-  return out;
-}
-
 /// Those whose step met nothing go on from its end.
 template <Metric M, class S>
 void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>& look, Flights& flights) {
   const S lambda = group.load(flights.lambda);
+  if constexpr (is_central<M>()) {
+    const Turning<S> turning = load_turning(group, flights);
+    const S turned = turning.at(spatial(to_phase(load(group, flights.y1)).x));
+    group.store(select(look.met, turning.turns, turned), flights.turns);
+  }
   store(group, select(look.met, load(group, flights.y), load(group, flights.y1)), flights.y);
   group.store(select(look.met, lambda, lambda + group.load(flights.length)), flights.lambda);
   group.store(look.delta, flights.delta);
@@ -220,9 +154,22 @@ void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>
   }
 }
 
-/// Follows all rays to their ends.
+/// Looks closely at the waiting steps of a group.
+template <class Stepper, Metric M, class S>
+Look<S> look_at(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>& group,
+                const Flights& flights, Trails* trails) {
+  constexpr std::size_t n = states_of_step<Stepper>();
+  const S length = group.load(flights.length);
+  const State<S> y1 = load(group, flights.y1);
+  const StepStates<S, n> step(stepper, setting.system, load(group, flights.y), y1, length);
+  Look<S> out = look_closely(setting, step, y1, length);
+  if (trails) look_onward(setting, step, group, flights, length, *trails, out);
+  return out;
+}
+
+/// Follows all rays to their ends; `trails`, where they go on behind what they meet, else null.
 template <class S, class Stepper, Metric M>
-void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights) {
+void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights, Trails* trails) {
   constexpr int kRound = 12;
   for (std::size_t i = 0; i < flights.count; ++i) flights.list[i] = static_cast<std::uint32_t>(i);
   flights.listed = flights.count;
@@ -234,7 +181,7 @@ void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights) {
     flights.listed = left;
     for (std::size_t i = 0; i < flights.waits; i += Lanes<S>::count) {
       const Group<S> group(flights.waiting.get(), i, flights.waits);
-      settle(setting, group, look_closely(stepper, setting, group, flights), flights);
+      settle(setting, group, look_at(stepper, setting, group, flights, trails), flights);
     }
   }
 }

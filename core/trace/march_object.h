@@ -144,6 +144,7 @@ struct AnyMarched<M, true> {
 template <Metric M>
 struct MarchObject {
   std::uint32_t number = 0;  ///< from 1
+  bool ends_rays = true;     ///< no ray goes on behind it
   double ball = 0;           ///< bounding radius in the object's frame
   /// A ball of chart coordinates that holds the object, where it is fixed in the chart; else negative.
   Vec3<double> centre{};
@@ -161,18 +162,30 @@ struct MarchObject {
     });
   }
 
-  /// The first crossing within 0 < delta < limit of a step, from evenly spaced states of it.
-  template <class S, std::size_t n>
-  Search<S> first_crossing(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
-                           const S& length, const S& limit) const {
+  bool starts_inside() const {
+    return with_type(marched, [](const auto& object) { return object.shape.starts_inside(); });
+  }
+
+  /// f(curve, shape), from evenly spaced states of a step.
+  template <class S, std::size_t n, class F>
+  decltype(auto) with_curve(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
+                            const S& length, F&& f) const {
     return with_type(marched, [&](const auto& object) {
       std::array<Vec3<S>, n> X, slope;
       for (std::size_t k = 0; k < n; ++k) {
         const Located<S> here = object.map.locate(at[k].x, rate[k].x);
         X[k] = here.X, slope[k] = here.slope;
       }
-      return NULLCONE_ISA::first_crossing(Curve<S, n>(X, slope, length), object.shape, limit,
-                                          S(1e-13) * length);
+      return f(Curve<S, n>(X, slope, length), object.shape);
+    });
+  }
+
+  /// The first crossing within 0 < delta < limit of a step.
+  template <class S, std::size_t n>
+  Search<S> first_crossing(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
+                           const S& length, const S& limit) const {
+    return with_curve(at, rate, length, [&](const auto& curve, const auto& shape) {
+      return NULLCONE_ISA::first_crossing(curve, shape, limit, S(1e-13) * length);
     });
   }
 };

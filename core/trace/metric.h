@@ -5,6 +5,10 @@
 //   g(x) -> Matrix4                 covariant components, signature (+,-,-,-)
 // Optional, detected by concepts, and only makes things faster or richer:
 //   skies                           how many infinities hold a sky (default none)
+//   central                         true if directions from the chart's origin are those of a central
+//                                   symmetry: then integrated rays know their order (turns.h)
+//   stationary                      false if g depends on t. Else the scene's times are shifted so that the
+//                                   observation is at t = 0, and differences of time keep all digits
 //   rhs(x, p) -> Phase              Hamilton's equations (else dual numbers and a solve, hamilton.h)
 //   ending(at, rate, precision)     where a ray ends: an Ending as S (else it goes on); precision: relative
 //   error
@@ -95,6 +99,24 @@ concept HasIsometry = requires(const M m, Vec4<double> x) {
   { m.to_origin(x, x) } -> std::same_as<Vec4<double>>;
   { m.from_origin(x, x) } -> std::same_as<Vec4<double>>;
 };
+
+/// Whether the spacetime is centrally symmetric about the chart's origin, or nearly.
+template <class M>
+constexpr bool is_central() {
+  if constexpr (requires { M::central; })
+    return M::central;
+  else
+    return false;
+}
+
+/// Whether nothing changes with time: scenes then count times from their observation.
+template <class M>
+constexpr bool is_stationary() {
+  if constexpr (requires { M::stationary; })
+    return M::stationary;
+  else
+    return true;
+}
 
 /// A vector of the static tetrad, turned about e3 by e^{i angle}: what isometries do to it.
 template <class S>

@@ -7,6 +7,30 @@
 
 NULLCONE_KERNEL_BEGIN
 
+/// Objects whose worldlines may start at any of their events, for nothing about them changes with time.
+template <class M>
+bool is_timeless(const Placing& placing) {
+  return is_stationary<M>() && placing.worldline.is_static() && !placing.gyroscope_axes;
+}
+
+/// The placing with a timeless worldline starting at the observation's time, so that proper times stay small
+/// and keep their digits.
+template <class M>
+Placing from_observation(Placing placing, double observation) {
+  if (is_timeless<M>(placing)) placing.worldline.event[0] = observation;
+  return placing;
+}
+
+/// An object's clock.
+struct Clock {
+  double at_observation = 0;  ///< proper time since the worldline's event
+  double origin = 0;          ///< what is taken off the body's proper times: they count from the observation
+};
+template <class M>
+Clock clock_of(const Placing& placing, double at_observation) {
+  return {at_observation, is_timeless<M>(placing) ? 0 : at_observation};
+}
+
 /// Whether every point of the bounding sphere can move with the object: its 4-velocity must be timelike.
 template <Metric M, class Body>
 bool moves_timelike(const M& metric, const Body& body, double ball) {

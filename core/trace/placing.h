@@ -15,7 +15,7 @@ struct RestPlacing {
   Vec4<double> place;  ///< event of the worldline, or the place in the chart
   bool local;          ///< whether `place` is carried to the origin
   Matrix3<double> axes;
-  double ball;  ///< bounding radius of the shape
+  double ball;  ///< bounding radius of the shape, or a little more
 
   template <class S>
   struct Ray {
@@ -79,10 +79,10 @@ struct RestPlacing {
   Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
     return {this, path(launch, k)};
   }
-  /// Chart time of an event that is given in the object's chart.
+  /// The scene's coordinates of an event that is given in the object's chart.
   template <class S>
-  S time(const Vec4<S>& event) const {
-    return local ? metric.from_origin(convert<S>(place), event)[0] : event[0];
+  Vec4<S> scene_event(const Vec4<S>& event) const {
+    return local ? metric.from_origin(convert<S>(place), event) : event;
   }
 };
 
@@ -162,8 +162,8 @@ struct MovingPlacing {
     return {this, path(launch, k), orbit.ray(launch.around, k)};
   }
   template <class S>
-  S time(const Vec4<S>& event) const {
-    return event[0];
+  Vec4<S> scene_event(const Vec4<S>& event) const {
+    return event;
   }
 };
 

@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "core/base/status.h"
 #include "core/trace/crossing.h"
+#include "core/trace/crossings.h"
 #include "core/trace/spacetime.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -17,11 +17,24 @@ struct Recorded {
   S order, Z, u, v, shift, t, tau, mu;
 };
 
+/// The same, with what details (details.h) are made of.
+template <class S>
+struct Crossed {
+  Recorded<S> record;
+  Meeting<S> here;
+  PathPoint<S> at;
+  Matrix4<S> g;
+  Vec4<S> u;        ///< the surface's 4-velocity
+  S frequency;      ///< that it emits
+  S rising;         ///< change of the shape's function along the ray, into the past
+  Vec4<S> emitted;  ///< the event in the scene's chart
+};
+
 /// The crossing of a path with an object near the affine length `found`. Paths and bodies share a chart, and
-/// `chart_time` gives the scene's chart time of its events.
-template <class S, Metric M, class Path, class Body, class Shape, class ChartTime>
-Recorded<S> record_crossing(const M& metric, const Path& path, const Body& body, const Shape& shape,
-                            const S& found, const ChartTime& chart_time) {
+/// `scene_event` gives the scene's chart coordinates of its events.
+template <class S, Metric M, class Path, class Body, class Shape, class SceneEvent>
+Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, const Shape& shape,
+                           const S& found, const SceneEvent& scene_event) {
   const Meeting<S> here = polish(path, body, shape, found);
   const PathPoint<S> P = path.at(here.lambda);
   const Matrix4<S> g = metric.g(P.event);
@@ -30,60 +43,117 @@ Recorded<S> record_crossing(const M& metric, const Path& path, const Body& body,
   using D = Dual<S, 1>;
   const Vec4<D> moving = body.event(D::variable(here.tau, 0), convert<D>(here.X));
   const auto u = Vec4<S>::map([&](std::size_t i) { return moving[i].d[0]; });
-  const S frequency = -inner(g, P.tangent, u) / sqrt(inner(g, u, u));
+  const S length = sqrt(inner(g, u, u)), frequency = -inner(g, P.tangent, u) / length;
 
   // The emission angle: between the photon and the unit normal, on the side to which the photon leaves.
   const Vec4<S> slope = gradient(body, shape, P.event, static_tetrad(metric, P.event), here.tau);
   const S steepness =
       sqrt(slope[1] * slope[1] + slope[2] * slope[2] + slope[3] * slope[3] - slope[0] * slope[0]);
-  const S mu = abs(dot(slope, P.local)) / (frequency * steepness);
+  const S rising = dot(slope, P.local), mu = abs(rising) / (frequency * steepness);
   const auto uv = shape.uv(here.X);
-  return {S(0.0),   here.lambda,    uv[0], uv[1], S(1.0) / frequency, chart_time(P.event),
-          here.tau, min(mu, S(1.0))};
+  const Vec4<S> emitted = scene_event(P.event);
+  return {{S(0.0), here.lambda, uv[0], uv[1], S(1.0) / frequency, emitted[0], here.tau, min(mu, S(1.0))},
+          here,
+          P,
+          g,
+          (S(1.0) / length) * u,
+          frequency,
+          rising,
+          emitted};
 }
 
-/// How the rays of a band, or of a part of it, ended.
-struct Ended {
-  std::size_t count;
-  const std::uint32_t* object;  ///< number of the object met, or of the sky seen, from 1; 0 for none
-  Status* status;
+/// What of the crossings is written down: the scene's Records, and what they mean for each object.
+struct RecordRules {
+  std::uint32_t objects = 0;
+  std::array<std::uint32_t, 2> sky{};     ///< numbers of the skies' objects, 0 for none
+  std::unique_ptr<bool[]> transparent{};  ///< by the object's number, from 1
+  Records records;
+  bool onward = false;  ///< rays go on behind what they meet
+
+  RecordRules() = default;
+  explicit RecordRules(const Scene& scene)
+      : objects(static_cast<std::uint32_t>(scene.objects.size())),
+        transparent(new bool[objects + 1]()),
+        records(scene.records),
+        onward(scene.records.max_hits > 0) {
+    for (std::uint32_t i = 0; i < objects; ++i) {
+      const Object& object = scene.objects[i];
+      if (object.shape.type == ShapeType::sky) {
+        sky[object.shape.sky - 1U] = i + 1;
+      } else {
+        transparent[i + 1] = object.transparent;
+        onward |= object.transparent;
+      }
+    }
+  }
+  bool is_sky(std::uint32_t number) const { return number == sky[0] || number == sky[1]; }
+  /// Whether rays end at the object, and nothing behind it is looked for.
+  bool ends_rays(std::uint32_t number) const { return records.max_hits == 0 && !transparent[number]; }
 };
 
 inline bool finite(const HitRecord& hit, bool sky) {
   return std::isfinite(hit.u + hit.v + hit.shift + hit.mu) && (sky || std::isfinite(hit.Z + hit.t + hit.tau));
 }
 
-/// Writes the records in the order of the pixels and returns how many. `record_object(number, list, listed,
-/// place, hits)` makes those of the listed rays, each at its place; `record_sky(ray)` one of the sky. Records
-/// whose numbers broke down are dropped, and the status says so.
-template <class RecordObject, class RecordSky>
-std::size_t write_records(const Ended& ended, std::uint32_t objects, std::uint32_t first_pixel,
-                          HitRecord* hits, const RecordObject& record_object, const RecordSky& record_sky) {
-  const std::unique_ptr<std::uint32_t[]> place(new std::uint32_t[ended.count]),
-      list(new std::uint32_t[ended.count]);
-  std::uint32_t next = 0;
-  for (std::size_t i = 0; i < ended.count; ++i) {
-    place[i] = next;
-    next += ended.object[i] != 0;
-    if (ended.object[i] != 0 && ended.status[i] == Status::sky)
-      hits[place[i]] = record_sky(i, ended.object[i]);
+/// Sorts the records of one ray by Z.
+inline void sort_by_Z(const HitRoom& room, std::size_t from, std::size_t end) {
+  for (std::size_t i = from + 1; i < end; ++i)
+    for (std::size_t j = i; j > from && room.hits[j].Z < room.hits[j - 1].Z; --j) {
+      std::swap(room.hits[j], room.hits[j - 1]);
+      if (room.details) std::swap(room.details[j], room.details[j - 1]);
+    }
+}
+
+/// Of the records of one ray, sorted, keeps what the rules let through, from place `kept` on. A ray that
+/// comes to its end here has the status `hit`; one that the rules let go no further for its order, the status
+/// `lookback_reached`; and one whose numbers broke down, `not_finite`.
+inline void keep_records(const RecordRules& rules, const HitRoom& room, std::size_t from, std::size_t end,
+                         std::size_t& kept, Status& status) {
+  const std::size_t first = kept;
+  for (std::size_t i = from; i < end; ++i) {
+    const HitRecord hit = room.hits[i];
+    const bool sky = rules.is_sky(hit.id);
+    if (!finite(hit, sky)) {
+      status = Status::not_finite;
+      continue;
+    }
+    if (hit.order > rules.records.max_order) {
+      if (status != Status::not_finite) status = Status::lookback_reached;
+      return;
+    }
+    if (room.details) room.details[kept] = room.details[i];
+    room.hits[kept++] = hit;
+    if (sky || !(rules.ends_rays(hit.id) || kept - first == rules.records.max_hits)) continue;
+    if (status != Status::not_finite) status = Status::hit;
+    return;
   }
-  for (std::uint32_t number = 1; number <= objects; ++number) {
+}
+
+/// Writes the records of crossings, given ray by ray, in the order of the rays and returns how many are kept.
+/// `record_object(number, list, listed, room)` makes those of the listed crossings, each at its place in
+/// `room`; `record_sky` likewise those of a sky.
+template <class T, class RecordObject, class RecordSky>
+std::size_t write_records(const Pool<T>& crossings, const RecordRules& rules, std::uint32_t first_pixel,
+                          const HitRoom& room, Status* status, const RecordObject& record_object,
+                          const RecordSky& record_sky) {
+  const std::unique_ptr<std::uint32_t[]> list(new std::uint32_t[crossings.size() + 1]);
+  for (std::uint32_t number = 1; number <= rules.objects; ++number) {
     std::size_t listed = 0;
-    for (std::size_t i = 0; i < ended.count; ++i)
-      if (ended.object[i] == number && ended.status[i] != Status::sky)
-        list[listed++] = static_cast<std::uint32_t>(i);
-    if (listed > 0) record_object(number, list.get(), listed, place.get(), hits);
+    for (std::size_t i = 0; i < crossings.size(); ++i)
+      if (crossings[i].number == number) list[listed++] = static_cast<std::uint32_t>(i);
+    if (listed == 0) continue;
+    if (rules.is_sky(number))
+      record_sky(number, list.get(), listed, room);
+    else
+      record_object(number, list.get(), listed, room);
   }
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < ended.count; ++i) {
-    if (ended.object[i] == 0) continue;
-    HitRecord hit = hits[place[i]];
-    hit.pixel = first_pixel + static_cast<std::uint32_t>(i);
-    if (finite(hit, ended.status[i] == Status::sky))
-      hits[kept++] = hit;
-    else
-      ended.status[i] = Status::not_finite;
+  for (std::size_t from = 0, end = 0; from < crossings.size(); from = end) {
+    const std::uint32_t ray = crossings[from].ray;
+    for (; end < crossings.size() && crossings[end].ray == ray; ++end)
+      room.hits[end].pixel = first_pixel + ray;
+    sort_by_Z(room, from, end);
+    keep_records(rules, room, from, end, kept, status[ray]);
   }
   return kept;
 }
@@ -95,21 +165,21 @@ inline HitRecord sky_record(const Vec3<double>& direction, double shift, std::ui
   return {0, number, 0, kInfinity, uv[0], uv[1], shift, -kInfinity, -kInfinity, 1};
 }
 
-/// Puts the records of a group of rays at their places.
+/// Puts the records of a group of crossings at their places.
 template <class S, class Group>
 void scatter(const Recorded<S>& r, const Group& group, std::uint32_t number, double t0, double tau0,
-             const std::uint32_t* place, HitRecord* hits) {
+             HitRecord* hits) {
   for (std::size_t lane = 0; lane < group.filled; ++lane)
-    hits[place[group.ray[lane]]] = {0,
-                                    number,
-                                    static_cast<std::uint32_t>(Lanes<S>::get(r.order, lane)),
-                                    Lanes<S>::get(r.Z, lane),
-                                    Lanes<S>::get(r.u, lane),
-                                    Lanes<S>::get(r.v, lane),
-                                    Lanes<S>::get(r.shift, lane),
-                                    Lanes<S>::get(r.t, lane) - t0,
-                                    Lanes<S>::get(r.tau, lane) - tau0,
-                                    Lanes<S>::get(r.mu, lane)};
+    hits[group.ray[lane]] = {0,
+                             number,
+                             static_cast<std::uint32_t>(Lanes<S>::get(r.order, lane)),
+                             Lanes<S>::get(r.Z, lane),
+                             Lanes<S>::get(r.u, lane),
+                             Lanes<S>::get(r.v, lane),
+                             Lanes<S>::get(r.shift, lane),
+                             Lanes<S>::get(r.t, lane) - t0,
+                             Lanes<S>::get(r.tau, lane) - tau0,
+                             Lanes<S>::get(r.mu, lane)};
 }
 
 NULLCONE_KERNEL_END

@@ -14,6 +14,7 @@ struct Sphere {
   static constexpr bool isotropic = true;
 
   double bounding_radius() const { return radius; }
+  bool starts_inside() const { return from_inside; }
 
   /// Zero on the surface, positive on the side from which rays come; quadratic along straight lines.
   template <class S>
@@ -47,6 +48,37 @@ struct Sphere {
     return max(select(meets, F / denominator, ray.valid), (distance - R) / ray.slope_max);
   }
 
+  /// The unit normal on the side where `value` is positive.
+  template <class S>
+  Vec3<S> normal(const Vec3<S>& X) const {
+    return S(from_inside ? -1.0 : 1.0) * normalised(X);
+  }
+
+  /// A step that cannot pass the next surface, for rays that may have met the sphere before and go on inside
+  /// or outside of it. Whoever has just come through the surface moves away from it, whatever rounding says
+  /// of the side.
+  template <class S>
+  S onward_step(const Sight<S>& ray, const S& rounding, const Mask<S>& inside) const {
+    const S along = dot(ray.X, ray.slope), distance = norm(ray.X);
+    const S R(radius), F = (distance - R) * (distance + R);  // as for safe_step, F'' >= 2 c
+    const S farthest = distance + ray.slope_max * ray.valid;
+    const auto outward = along > S(0.0);
+
+    const S c = min(ray.slope_min * ray.slope_min - farthest * ray.bend_max, S(-1e-300));
+    const S turned_back = (along + sqrt(along * along - c * max(F, S(0.0)))) / -c;
+    const S outer = select(outward, turned_back, Sphere{radius, false}.safe_step(ray, rounding));
+
+    const S bent = ray.slope_max * ray.slope_max + farthest * ray.bend_max, G = max(-F, S(0.0));
+    const S root = sqrt(along * along + bent * G);
+    return select(inside, select(outward, G / (along + root), (root - along) / bent), outer);
+  }
+
+  /// How far a ray that meets the surface here has to go on to be past it.
+  template <class S>
+  S skip(const Sight<S>& ray, const S& rounding) const {
+    return max(S(8.0) * rounding, S(1e-12 * radius) / ray.slope_max);
+  }
+
   /// u: longitude, 0.5 at +x, growing towards +y; v: 0 at -z, 1 at +z (equirectangular).
   template <class S>
   static Vec<S, 2> uv(const Vec3<S>& X) {
@@ -62,6 +94,7 @@ struct Quad {
   static constexpr bool isotropic = false;
 
   double bounding_radius() const { return sqrt(half_x * half_x + half_y * half_y); }
+  bool starts_inside() const { return false; }
 
   template <class S>
   S value(const Vec3<S>& X) const {
@@ -85,6 +118,29 @@ struct Quad {
     const S by_plane = first_root(abs(ray.X[2]), slope, -ray.bend_max, ray.valid);
     const S by_distance = distance / ray.slope_max;
     return select(by_distance <= resolution, S(0.0), max(by_plane, by_distance));
+  }
+
+  template <class S>
+  Vec3<S> normal(const Vec3<S>&) const {
+    return {{S(0.0), S(0.0), S(1.0)}};
+  }
+
+  /// The same for rays that may have met the quad before: those that move away from its plane have first to
+  /// turn round.
+  template <class S>
+  S onward_step(const Sight<S>& ray, const S& resolution, const Mask<S>&) const {
+    const S slope = select(ray.X[2] < S(0.0), -ray.slope[2], ray.slope[2]);
+    const S bend = max(ray.bend_max, S(1e-300)), step = safe_step(ray, resolution);
+    const S turned_back = (slope + sqrt(slope * slope + S(2.0) * bend * abs(ray.X[2]))) / bend;
+    return select((step > S(0.0)) & (slope > S(0.0)), turned_back, step);
+  }
+
+  /// Within `rounding` the plane counts as met; the flatter a ray meets it, the longer it stays so near. The
+  /// factor leaves room for steps whose rounding is larger.
+  template <class S>
+  S skip(const Sight<S>& ray, const S& rounding) const {
+    const S steep = max(abs(ray.slope[2]), S(1e-300));
+    return min(S(64.0) * rounding * ray.slope_max / steep, S(2 * bounding_radius()) / ray.slope_max);
   }
 
   template <class S>

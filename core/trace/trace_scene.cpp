@@ -35,6 +35,12 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Counts all times from the observation: far from t = 0, times would lose the digits of their differences.
+void count_from_observation(Scene& scene) {
+  const double now = std::exchange(scene.observer.event[0], 0.0);
+  for (Object& object : scene.objects) object.placing.worldline.event[0] -= now;
+}
+
 /// Takes bands in order, one at a time, and tells how far it has come. What is thrown is kept until the
 /// pipeline is empty: what is in flight when an exception crosses a pipeline of TBB is never freed.
 struct BandCounter {
@@ -106,6 +112,7 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   if (scene.max_lookback == 0) scene.max_lookback = spacetime.default_lookback(parameters);
   Scene sampled = scene;
   sampled.camera = sample_camera(scene.camera);
+  if (spacetime.description().stationary) count_from_observation(sampled);
   Unfit unfit{};
   auto tracer = spacetime.prepare(parameters, sampled, unfit);
   if (tracer) return tracer;
