@@ -42,6 +42,7 @@ void trace(benchmark::State& state, const std::string& text, std::string_view is
   const auto tracer = prepare_scene(find_spacetime(scene.metric, isa), scene, "benchmark");
   const auto width = static_cast<std::size_t>(scene.camera.width);
   std::vector<RayRecord> rays(width * kBandLines);
+  Gathering sink;
   for ([[maybe_unused]] auto _ : state) {
     if (threads > 1) {
       benchmark::DoNotOptimize(
@@ -49,8 +50,7 @@ void trace(benchmark::State& state, const std::string& text, std::string_view is
       continue;
     }
     for (int line = 0; line < scene.camera.height; line += kBandLines) {
-      Gathering sink;
-      sink.hits.reserve(rays.size());
+      sink.hits.clear();
       tracer->trace_band(line, std::min(kBandLines, scene.camera.height - line), {sink, rays});
       benchmark::DoNotOptimize(sink.hits.data());
     }

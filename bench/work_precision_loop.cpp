@@ -73,13 +73,13 @@ double tracing(std::string_view isa, int repeats) {
   Scene scene = read_scene(kScene, "stepper_loop", metric_descriptions());
   const auto tracer = prepare_scene(find_spacetime(scene.metric, isa), scene, "stepper_loop");
   std::vector<RayRecord> rays(static_cast<std::size_t>(scene.camera.width) * kBandLines);
+  Gathering sink;
   double best = 1e300;
   for (int i = 0; i < repeats; ++i) {
     double steps = 0, seconds = 0;
     for (int line = 0; line < scene.camera.height; line += kBandLines) {
       const double begin = cpu_seconds();
-      Gathering sink;
-      sink.hits.reserve(rays.size());
+      sink.hits.clear();
       tracer->trace_band(line, kBandLines, {sink, rays});
       seconds += cpu_seconds() - begin;
       for (const RayRecord& ray : rays) steps += ray.steps;
