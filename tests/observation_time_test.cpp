@@ -46,7 +46,8 @@ std::string scene_at(const std::string& metric, double now, double anchor, bool 
     "worldline": {"type": "geodesic", "event": [)" +
       text_of(now - 3) + R"(, 3.2, 3.2, 0.5], "velocity": [0.1, -0.3, 0]}}})";
   return scene_of(metric,
-                  R"("type": "panorama", "fov_deg": [180, 90], "azimuth_deg": 80, "resolution": [60, 30])",
+                  R"("type": "panorama", "fov_deg": [180, 90], "azimuth_deg": 80, "resolution": )" +
+                      std::string(kSanitized ? "[20, 10]" : "[60, 30]"),
                   rest + card + fixed + (moves ? falling : ""),
                   R"("observer": {"event": [)" + text_of(now) +
                       R"(, 2.8, 3, 0.1]}, "max_lookback": 9, "records": {"differentials":
@@ -57,9 +58,9 @@ std::string scene_at(const std::string& metric, double now, double anchor, bool 
 void expect_same(const std::string& metric, bool moves, const std::string& more) {
   const Traced at_zero = trace_text(scene_at(metric, 0, 0, moves, more));
   const std::vector<double> expected = numbers_of(at_zero);
-  EXPECT_GT(at_zero.hits(), 100U);
-  for (const double now : {1e9, -37.25})
-    for (const double anchor : {0.0, now, 1e9 + 5}) {
+  EXPECT_GT(at_zero.hits(), kSanitized ? 10U : 100U);
+  for (const double now : kSanitized ? std::vector{1e9} : std::vector{1e9, -37.25})
+    for (const double anchor : kSanitized ? std::vector{0.0} : std::vector{0.0, now, 1e9 + 5}) {
       const Traced traced = trace_text(scene_at(metric, now, anchor, moves, more));
       const std::vector<double> found = numbers_of(traced);
       ASSERT_EQ(found.size(), expected.size());

@@ -137,7 +137,7 @@ TEST(SameBits, OnOneAndTwoThreads) {
                   two = trace_scene(spacetime, read, "test", 2);
     EXPECT_EQ(one.manifest.hits_sha256, two.manifest.hits_sha256);
     EXPECT_EQ(one.manifest.rays_sha256, two.manifest.rays_sha256);
-    EXPECT_GT(one.hits.count(), 100U);
+    EXPECT_GT(one.hits.count(), kSanitized ? 20U : 100U);
   }
 }
 

@@ -66,7 +66,9 @@ refused_with 2 "expected either a SCENE or --from" "$trace" -q --from a.exr a.js
 refused_with 2 "expected either a SCENE or --from" "$trace" -q -o x.exr
 
 # Interrupted runs: what is there is kept, and the next run goes on. Slow enough to be interrupted.
-scene slow.json 1000 240 's["paths"] = "integrated"; s["objects"] = s["objects"][:1]; s["objects"][0]["placing"]["worldline"] = {"type": "static", "event": [0, 0, 0.2, 0]}'
+size=(1000 240)
+[ -n "${NULLCONE_SANITIZED:-}" ] && size=(120 96)
+scene slow.json "${size[@]}" 's["paths"] = "integrated"; s["objects"] = s["objects"][:1]; s["objects"][0]["placing"]["worldline"] = {"type": "static", "event": [0, 0, 0.2, 0]}'
 run 0 "$trace" -q slow.json -o slow.exr
 interruptions=0
 for ((i = 0; i < 60; ++i)); do
