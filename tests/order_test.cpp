@@ -99,7 +99,8 @@ TEST(Order, IsTheSweptAngleAboutAWormhole) {
     "coordinate", "centre": [0, 0, 0]}}, {"name": "here", "shape": {"type": "sky"}})";
   std::map<std::uint32_t, std::size_t> counts;
   for (const double fov : {10.0, 0.1, 0.001}) {
-    const std::string camera = R"("type": "perspective", "resolution": [60, 3], "azimuth_deg": )" +
+    const std::string camera = R"("type": "perspective", "resolution": )" +
+                               std::string(kSanitized ? "[12, 1]" : "[60, 3]") + R"(, "azimuth_deg": )" +
                                text_of(180 + rim) + R"(, "elevation_deg": )" + text_of(0.1 * fov) +
                                R"(, "fov_deg": )" + text_of(fov);
     for (const auto& [order, count] : check_orders(
@@ -107,8 +108,8 @@ TEST(Order, IsTheSweptAngleAboutAWormhole) {
                       R"("accuracy": "reference", "observer": {"event": [0, )" + text_of(rho) + ", 0, 0]}")))
       counts[order] += count;
   }
-  EXPECT_GT(counts[1], 20U);
-  EXPECT_GT(counts[2], 5U);
+  EXPECT_GT(counts[1], kSanitized ? 2U : 20U);
+  EXPECT_GT(counts[2], kSanitized ? 0U : 5U);
 }
 
 TEST(Order, EndsWhereTheSceneSaysSo) {
