@@ -50,7 +50,7 @@ Dataset read_needed(const std::string& path, const Manifest& manifest,
     postrender::check_channels(look, manifest, manifest.channels, path);
     needed = needed | postrender::needed_channels(look, manifest);
   }
-  return read_dataset(path, needed);
+  return read_dataset(path, needed, false);
 }
 
 int render(const Options& options) {

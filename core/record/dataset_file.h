@@ -55,7 +55,7 @@ class DatasetReader {
   /// Scan lines `first` to `first + lines` of the window.
   Band band(int first, int lines);
   /// All lines, into a dataset that has this manifest and no records yet.
-  void read_all(Dataset& out);
+  void read_all(Dataset& out, bool with_rays = true);
 
  private:
   struct Impl;
@@ -64,7 +64,8 @@ class DatasetReader {
 
 /// A whole dataset that is in memory.
 void write_dataset(const std::string& path, const Dataset& dataset, const Preview& preview);
-Dataset read_dataset(const std::string& path, ChannelSet wanted = kAllChannels);
+/// Without `with_rays` the columns of rays stay empty.
+Dataset read_dataset(const std::string& path, ChannelSet wanted = kAllChannels, bool with_rays = true);
 
 /// The manifest alone: the header is read, not the pixels.
 Manifest read_manifest(const std::string& path);

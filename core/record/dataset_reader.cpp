@@ -115,8 +115,7 @@ struct DatasetReader::Impl {
   }
 
   /// Puts the lines behind those that are there.
-  void read(int first, int lines, Hits& to, Rays& to_rays) {
-    const std::size_t width = static_cast<std::size_t>(manifest.width);
+  void read(int first, int lines, Hits& to, Rays* to_rays) {
     for (int y = manifest.first_line + first; y < manifest.first_line + first + lines; ++y) {
       hits->readPixelSampleCounts(y);
       const std::size_t begin = to.offset.size() - 1;
@@ -127,18 +126,23 @@ struct DatasetReader::Impl {
       line->aim(to, begin);
       hits->readPixels(y);
     }
+    if (to_rays) read_rays(first, lines, *to_rays);
+  }
+
+  void read_rays(int first, int lines, Rays& to) {
     const int n = manifest.samples;
-    const std::size_t more = width * static_cast<std::size_t>(lines * n * n), before = to_rays.status.size();
+    const std::size_t more =
+        static_cast<std::size_t>(manifest.width) * static_cast<std::size_t>(lines * n * n);
     Rays part;
     for_each_channel([&](const ChannelInfo&, auto& column) { column.resize(more); }, part);
     rays->setFrameBuffer(exr::ray_slices(part, exr::window_of(manifest, first, lines, n)));
     rays->readPixels(n * (manifest.first_line + first), n * (manifest.first_line + first + lines) - 1);
     for_each_channel(
-        [&](const ChannelInfo&, auto& column, auto& from) {
-          if (before == 0) return column.swap(from);
+        [](const ChannelInfo&, auto& column, auto& from) {
+          if (column.empty()) return column.swap(from);
           column.insert(column.end(), from.begin(), from.end());
         },
-        to_rays, part);
+        to, part);
   }
 };
 
@@ -150,24 +154,25 @@ const Manifest& DatasetReader::manifest() const { return impl_->manifest; }
 Band DatasetReader::band(int first, int lines) {
   Band out;
   out.hits.channels = impl_->channels;
-  guarded(impl_->path, [&] { impl_->read(first, lines, out.hits, out.rays); });
+  guarded(impl_->path, [&] { impl_->read(first, lines, out.hits, &out.rays); });
   return out;
 }
 
-Dataset read_dataset(const std::string& path, ChannelSet wanted) {
+Dataset read_dataset(const std::string& path, ChannelSet wanted, bool with_rays) {
   DatasetReader reader(path, wanted);
   Dataset out;
   out.manifest = reader.manifest();
-  reader.read_all(out);
+  reader.read_all(out, with_rays);
   return out;
 }
 
-void DatasetReader::read_all(Dataset& out) {
+void DatasetReader::read_all(Dataset& out, bool with_rays) {
   out.hits.channels = impl_->channels;
   // Room for one crossing a pixel; pages that are never touched cost nothing.
   out.hits.offset.reserve(out.pixels() + 1);
   for_each_channel([&](const ChannelInfo&, auto& column) { column.reserve(out.pixels()); }, out.hits);
-  guarded(impl_->path, [&] { impl_->read(0, out.manifest.lines, out.hits, out.rays); });
+  guarded(impl_->path,
+          [&] { impl_->read(0, out.manifest.lines, out.hits, with_rays ? &out.rays : nullptr); });
 }
 
 Manifest read_manifest(const std::string& path) {
