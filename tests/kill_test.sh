@@ -73,7 +73,8 @@ done
 (trace) || fault "the last run fails: $(cat err)"
 [ "$(ls out)" = a.exr ] || fault "the last run leaves: $(ls out)"
 for end in "${!ends[@]}"; do printf '%s: %d\n' "$end" "${ends[$end]}"; done | sort
-[ $((${ends[TERM:3]:-0} + ${ends[INT:3]:-0})) -gt 0 ] || fault "no SIGTERM or SIGINT hit a run that was tracing"
-[ "${ends[KILL:137]:-0}" -gt 0 ] || fault "no SIGKILL hit a run"
+# Few kills (under sanitizers) may all come too late.
+[ "$kills" -lt 5 ] || [ $((${ends[TERM:3]:-0} + ${ends[INT:3]:-0})) -gt 0 ] || fault "no SIGTERM or SIGINT hit a run that was tracing"
+[ "$kills" -lt 5 ] || [ "${ends[KILL:137]:-0}" -gt 0 ] || fault "no SIGKILL hit a run"
 printf '%d faults\n' "$faults"
 [ "$faults" -eq 0 ]
