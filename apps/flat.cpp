@@ -197,18 +197,6 @@ Imf::FrameBuffer flat_slices(const FlatLines& lines, const Imath::Box2i& window)
   return out;
 }
 
-/// OpenEXR's complaints become ours.
-template <class Write>
-void guarded(const std::string& path, Write&& write) {
-  try {
-    write();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw WorkError(path, std::string("cannot write: ") + error.what());
-  }
-}
-
 }  // namespace
 
 void write_flat(const std::string& data, const std::string& output, int ranks) {
@@ -223,15 +211,16 @@ void write_flat(const std::string& data, const std::string& output, int ranks) {
   WholeFile whole(output);
   Imf::StdOFStream stream(whole.stream(), output.c_str());
   std::unique_ptr<Imf::OutputFile> file;
-  guarded(output, [&] { file = std::make_unique<Imf::OutputFile>(stream, flat_header(manifest, fitting)); });
+  exr::guard_writing(
+      output, [&] { file = std::make_unique<Imf::OutputFile>(stream, flat_header(manifest, fitting)); });
   for_each_run(manifest, [&](int first, int lines) {
     const FlatLines flat = flattener.flatten(reader.band(first, lines));
-    guarded(output, [&] {
+    exr::guard_writing(output, [&] {
       file->setFrameBuffer(flat_slices(flat, exr::window_of(manifest, first, lines)));
       file->writePixels(lines);
     });
   });
-  guarded(output, [&] { file.reset(); });
+  exr::guard_writing(output, [&] { file.reset(); });
   whole.finish();
 }
 

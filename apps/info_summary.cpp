@@ -77,13 +77,6 @@ class Counts {
   std::vector<Range> ranges_ = std::vector<Range>(kHitChannelInfo.size(), {kNone, -kNone});
 };
 
-Report channel_names(ChannelSet channels) {
-  Report out = Report::array();
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-    if (channels.has(i)) out.push_back(std::string(kHitChannelInfo[i].name));
-  return out;
-}
-
 }  // namespace
 
 Report summary(DatasetReader& reader, std::size_t worst) {

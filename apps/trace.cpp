@@ -115,8 +115,8 @@ int work(Options& options) {
   if (options.scene.empty() == options.from.empty())
     throw InputError("command line", "expected either a SCENE or --from DATA.exr");
   const std::string& source = options.from.empty() ? options.scene : options.from;
-  if (!options.from.empty() && !looks_like_exr(source)) read_manifest(source);  // says what is wrong
-  Scene scene = read_scene(scene_text(source), source, metric_descriptions());
+  const std::string text = options.from.empty() ? scene_text(source) : read_manifest(source).scene;
+  Scene scene = read_scene(text, source, metric_descriptions());
   const Spacetime& spacetime = find_spacetime(scene.metric, options.isa);
   const int threads = options.common.threads;
   check_memory(scene.camera, scene.records.channels, bands_in_flight(threads), available_memory(), source);

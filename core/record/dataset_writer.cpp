@@ -18,18 +18,6 @@ namespace nullcone {
 
 namespace {
 
-/// OpenEXR's complaints become ours.
-template <class Work>
-void guarded(const std::string& path, Work&& work) {
-  try {
-    work();
-  } catch (const WorkError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw WorkError(path, std::string("cannot write: ") + error.what());
-  }
-}
-
 /// The manifest as it stands in the file: with room for numbers that are not known yet.
 std::string reserved_text(Manifest manifest) {
   manifest.hits_sha256 = manifest.rays_sha256 = std::string(64, '0');
@@ -66,7 +54,7 @@ struct DatasetWriter::Impl {
 
   Impl(const std::string& to, const Manifest& from)
       : manifest(from), path(to), text(reserved_text(from)), whole(to), line(from.channels, from.width) {
-    guarded(path, [&] {
+    exr::guard_writing(path, [&] {
       parts = std::make_unique<Parts>(whole.stream(), path, exr::make_headers(manifest, text));
       parts->hits.setFrameBuffer(line.buffer());
     });
@@ -151,11 +139,11 @@ int DatasetWriter::lines() const { return impl_->lines; }
 const Manifest& DatasetWriter::manifest() const { return impl_->manifest; }
 
 void DatasetWriter::add(const Band& band, const Preview& preview) {
-  guarded(impl_->path, [&] { impl_->add(band, preview); });
+  exr::guard_writing(impl_->path, [&] { impl_->add(band, preview); });
 }
 
 void DatasetWriter::finish(double core_seconds, double seconds) {
-  guarded(impl_->path, [&] {
+  exr::guard_writing(impl_->path, [&] {
     if (impl_->lines != impl_->manifest.lines) throw std::logic_error("bands are missing");
     impl_->seal(core_seconds, seconds);
     impl_->whole.finish();
@@ -163,7 +151,7 @@ void DatasetWriter::finish(double core_seconds, double seconds) {
 }
 
 void DatasetWriter::finish_partial(const std::string& path, double core_seconds, double seconds) {
-  guarded(path, [&] {
+  exr::guard_writing(path, [&] {
     Manifest& manifest = impl_->manifest;
     manifest.traced_lines = impl_->lines;
     while (impl_->lines < manifest.lines) {

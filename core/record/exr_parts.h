@@ -5,9 +5,11 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 
+#include <new>
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/record/dataset.h"
 
 namespace nullcone::exr {
@@ -51,5 +53,19 @@ class DeepLine {
 
 /// The columns of rays as slices of a flat part, over the window.
 Imf::FrameBuffer ray_slices(const Rays& rays, const Imath::Box2i& window);
+
+/// Whatever OpenEXR complains about while a file is written becomes a WorkError.
+template <class Work>
+void guard_writing(const std::string& path, Work&& work) {
+  try {
+    work();
+  } catch (const WorkError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw WorkError(path, std::string("cannot write: ") + error.what());
+  }
+}
 
 }  // namespace nullcone::exr

@@ -1,5 +1,6 @@
-// The hash by which a dataset file vouches for every one of its bytes: SHA-256 over the digits of the SHA-256 of
-// each MiB of the file (so that many threads can work on it), with zeros in the place of its own 64 digits.
+// The hash by which a dataset file vouches for every one of its bytes: SHA-256 over the digits of the SHA-256
+// of each MiB of the file (so that many threads can work on it), with zeros in the place of its own 64
+// digits.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -45,6 +46,14 @@ auto columns(Table& h) {
 template <class Table>
 requires std::same_as<std::remove_const_t<Table>, Rays>
 auto columns(Table& rays) { return std::tie(rays.status, rays.steps, rays.error, rays.drift); }
+
+/// In the order of the table.
+inline std::vector<std::string> channel_names(ChannelSet channels) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
+    if (channels.has(i)) out.emplace_back(kHitChannelInfo[i].name);
+  return out;
+}
 
 inline const ChannelInfo& info_of(const Hits&, std::size_t channel) { return kHitChannelInfo[channel]; }
 inline const ChannelInfo& info_of(const Rays&, std::size_t channel) { return kRayChannelInfo[channel]; }

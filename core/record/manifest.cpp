@@ -11,13 +11,6 @@ using nlohmann::json;
 
 namespace {
 
-json to_json(ChannelSet channels) {
-  json out = json::array();
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-    if (channels.has(i)) out.push_back(std::string(kHitChannelInfo[i].name));
-  return out;
-}
-
 ChannelSet channels_from(JsonObject& root) {
   ChannelSet out;
   const json& names = root.at("channels");
@@ -72,7 +65,7 @@ std::string manifest_to_json(const Manifest& m) {
                     {"lines", m.lines},
                     {"traced_lines", m.traced_lines},
                     {"samples", m.samples},
-                    {"channels", to_json(m.channels)},
+                    {"channels", channel_names(m.channels)},
                     {"setting", m.setting.empty() ? json::object() : json::parse(m.setting)},
                     {"seconds", m.seconds}});
   return out.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/json.h"
@@ -20,15 +20,19 @@ std::pair<std::string, std::string> old_fingerprints(const Dataset& dataset) {
   return {hits.digits(), rays.digits()};
 }
 
-/// What is wrong with a value of a channel, by its range in the table; nothing if it may be so.
-bool in_range(const ChannelInfo& channel, double x) {
-  if (std::isnan(x)) return false;
-  if (channel.range == "0 to 1") return x >= 0 && x <= 1;
-  if (channel.range == "-1 to 1") return std::fabs(x) <= 1;
-  if (channel.range == "from 0" || channel.range == "0 to inf") return x >= 0;
-  if (channel.range == "0 to 7") return x >= 0 && x < static_cast<double>(kStatusNames.size());
-  return true;
-}
+/// The numbers that may stand in a channel, by its range in the table.
+struct Bounds {
+  double least = -kUnbounded, most = kUnbounded;
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+  explicit Bounds(std::string_view range) {
+    if (range.starts_with("0 to ") || range.starts_with("from 0")) least = 0;
+    if (range.starts_with("-1 to ")) least = -1;
+    if (range.ends_with(" to 1")) most = 1;
+    if (range.ends_with(" to 7")) most = static_cast<double>(kStatusNames.size() - 1);
+  }
+  bool hold(double x) const { return x >= least && x <= most; }  // not for NaN
+};
 
 }  // namespace
 
@@ -63,8 +67,9 @@ void Verifier::add(const Band& band) {
     return [this, part, expected](const ChannelInfo& channel, const auto& column) {
       const std::string name = part + std::string(channel.name);
       if (column.size() != expected) return once(name + " has a wrong length");
+      const Bounds bounds(channel.range);
       for (const auto value : column)
-        if (!in_range(channel, static_cast<double>(value)))
+        if (!bounds.hold(static_cast<double>(value)))
           return once(name + " is out of range: expected " + std::string(channel.range));
     };
   };

@@ -109,6 +109,7 @@ Band gather(const TracedBand& band, const Scene& scene) {
   const std::size_t samples = static_cast<std::size_t>(camera.samples * camera.samples);
   Band out;
   out.hits.channels = kAllChannels;
+  for_each_channel([&](const ChannelInfo&, auto& column) { column.reserve(band.hits.size()); }, out.hits);
   ByPixel by_pixel(band, camera);
   for (std::size_t i = 0; i < band.rays.size() / samples; ++i) {
     by_pixel.for_each(i % width, i / width, [&](std::size_t hit, std::uint32_t sample) {
