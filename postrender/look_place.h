@@ -1,0 +1,29 @@
+// Where a look stands, and how colours are written in it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/json.h"
+#include "postrender/image.h"
+
+namespace nullcone::postrender {
+
+/// A look as JSON and where it came from.
+struct LookSource {
+  std::string place;    ///< a file's name, for complaints
+  std::string pointer;  ///< of the look inside that file: "" or "/look"
+  std::string folder;   ///< relative files are resolved against this
+};
+
+/// The name of a file under `key`, resolved against the folder of the look.
+std::string parse_file(JsonObject& in, std::string_view key, const LookSource& source);
+
+/// Colours in JSON are sRGB numbers in [0, 1], as colour pickers show them; in memory they are linear.
+Rgb parse_color(JsonObject& in, std::string_view key);
+Rgb parse_color_or(JsonObject& in, std::string_view key, Rgb fallback);
+/// From three sRGB numbers.
+Rgb decoded(const std::vector<double>& srgb);
+
+}  // namespace nullcone::postrender
