@@ -10,11 +10,22 @@ namespace nullcone::postrender {
 
 extern const Kernel NULLCONE_POSTRENDER_KERNEL;
 const Kernel NULLCONE_POSTRENDER_KERNEL = {
-    NULLCONE_ISA_NAME,           NULLCONE_ISA::footprints,        NULLCONE_ISA::recorded_footprints,
-    NULLCONE_ISA::weigh,         NULLCONE_ISA::image_colors,      NULLCONE_ISA::checkerboard_colors,
-    NULLCONE_ISA::display_light, NULLCONE_ISA::black_body_light,  NULLCONE_ISA::background_light,
-    NULLCONE_ISA::expose,        NULLCONE_ISA::exponential_curve, NULLCONE_ISA::desaturate,
-    NULLCONE_ISA::clip,          NULLCONE_ISA::interleave,
+    NULLCONE_ISA_NAME,
+    NULLCONE_ISA::footprints,
+    NULLCONE_ISA::recorded_footprints,
+    NULLCONE_ISA::weigh,
+    NULLCONE_ISA::image_colors,
+    NULLCONE_ISA::checkerboard_colors,
+    NULLCONE_ISA::plain_light,
+    NULLCONE_ISA::filtered_light,
+    NULLCONE_ISA::mixed_light,
+    NULLCONE_ISA::light_of_lines,
+    NULLCONE_ISA::background_light,
+    NULLCONE_ISA::expose,
+    NULLCONE_ISA::exponential_curve,
+    NULLCONE_ISA::desaturate,
+    NULLCONE_ISA::clip,
+    NULLCONE_ISA::interleave,
 };
 
 }  // namespace nullcone::postrender

@@ -8,8 +8,8 @@
 #include <span>
 #include <string_view>
 
-#include "postrender/black_body.h"
 #include "postrender/image.h"
+#include "postrender/spectrum.h"
 #include "postrender/texture.h"
 
 namespace nullcone::postrender {
@@ -43,11 +43,21 @@ struct ImageView {
   bool mipmap;
 };
 
-struct BlackBodyView {
-  const BlackBodyNode* nodes;
-  float temperature_K;
-  bool doppler, searchlight;
-  Rgbx at_rest;
+/// Pixels that light is added to: sum += weight * what is seen, by g, of a surface that is coloured so.
+struct Lit {
+  std::size_t count;
+  const float *g, *weight;
+  const Rgbx* colors;
+  Rgbx* sum;
+};
+
+/// A LineTable as pixel loops see it.
+struct LinesView {
+  const LineTable::Line* lines;
+  std::size_t count;
+  double first_nm, per_nm, last;  ///< of the response: sample i stands at first_nm + i / per_nm, i up to last
+  const std::array<double, 3>* response;
+  TableView power;
 };
 
 /// The appearance of a pixel without a crossing, or behind an opaque one.
@@ -77,9 +87,11 @@ struct Kernel {
   // The texture's colours along a run, of images also the alpha (colours are multiplied by it).
   void (*image)(const ImageView& image, const Run& run, Rgbx* out);
   void (*checkerboard)(const CheckerboardTexture& board, const Run& run, Rgbx* out);
-  // sum += weight * what is seen of a surface that is coloured so.
-  void (*display)(bool searchlight, const Run& run, const Rgbx* colors, Rgbx* sum);
-  void (*black_body)(const BlackBodyView& body, const Run& run, const Rgbx* colors, Rgbx* sum);
+  // Light: colours as they are; filters before one spectrum; amounts of three spectra; lines behind filters.
+  void (*plain)(const Lit& lit);
+  void (*filtered)(const TableView& table, const Lit& lit);
+  void (*mixed)(const TableView& table, const Lit& lit);
+  void (*lines)(const LinesView& lines, const Lit& lit);
   /// sum += transmittance * color.
   void (*background)(const float* transmittance, const Rgbx& color, std::size_t count, Rgbx* sum);
   // Development, in place but for the first and the last step.

@@ -1,12 +1,10 @@
-// What a surface radiates and what of it is seen (spectrum.h), along a run of pixels.
+// What of a surface's light is seen (spectrum.h), along a run of pixels.
 #pragma once
 
 #include "postrender/kernel.h"
 #include "postrender/lanes.h"
 
 NULLCONE_KERNEL_BEGIN
-
-inline float fourth_power(float g) { return (g * g) * (g * g); }
 
 inline void add(postrender::Rgbx* sum, Float4 light) { store(load<Float4>(sum) + light, sum); }
 
@@ -32,73 +30,96 @@ void background_light(const float* transmittance, const postrender::Rgbx& color,
   for (std::size_t i = 0; i < count; ++i) add(sum + i, transmittance[i] * behind);
 }
 
-void display_light(bool searchlight, const postrender::Run& run, const postrender::Rgbx* colors,
-                   postrender::Rgbx* sum) {
-  for (std::size_t i = 0; i < run.count; ++i) {
-    const float beaming = searchlight ? fourth_power(run.shift[i]) : 1.0f;
-    add(sum + i, run.weight[i] * (beaming * load<Float4>(colors + i)));
+void plain_light(const postrender::Lit& lit) {
+  for (std::size_t i = 0; i < lit.count; ++i) add(lit.sum + i, lit.weight[i] * load<Float4>(lit.colors + i));
+}
+
+constexpr std::size_t kRow = 64;  ///< pixels whose places in the table are found together
+
+/// Where pixels stand in a table, and their weights: 0 where g is not positive and finite.
+struct Places {
+  std::int32_t node[kRow];
+  float s[kRow], weight[kRow];
+};
+
+inline void find_places(const postrender::TableView& table, const postrender::Lit& lit, std::size_t first,
+                        std::size_t count, Places& out) {
+  const float from = table.from, to = table.to;
+  const std::int32_t unused = table.unused_bits, mask = (1 << unused) - 1, start = table.first;
+  const float part = 1.0f / static_cast<float>(1 << unused);
+  const std::int32_t stride = table.stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float g = lit.g[first + i];
+    const float above = g > from ? g : from, within = above < to ? above : to;
+    const auto bits = bits_as<std::int32_t>(within);
+    out.node[i] = ((bits >> unused) - start) * stride;
+    out.s[i] = static_cast<float>(bits & mask) * part;
+    out.weight[i] = (g > 0) & (g < __builtin_inff()) ? lit.weight[first + i] : 0.0f;
   }
 }
 
-/// Where a temperature stands in the table, and by how much the entry is to be multiplied.
-struct Seen {
-  std::int32_t node;
-  float s, factor;
-};
-
-/// Black for what is colder than the table or not a number; in proportion to the temperature beyond the
-/// hottest.
-inline Seen seen_at(float temperature_K) {
-  constexpr auto kColdest = static_cast<float>(postrender::kColdest_K);
-  constexpr auto kHottest = static_cast<float>(postrender::kHottest_K);
-  constexpr int kUnused = 23 - postrender::kNodeBits;  // bits of the mantissa between two nodes
-  const float within =
-      temperature_K > kColdest ? temperature_K < kHottest ? temperature_K : kHottest : kColdest;
-  const float beyond = temperature_K > kHottest ? temperature_K * (1 / kHottest) : 1.0f;
-  const auto bits = bits_as<std::int32_t>(within);
-  return {(bits >> kUnused) - postrender::kFirstNode,
-          static_cast<float>(bits & ((1 << kUnused) - 1)) * (1.0f / (1 << kUnused)),
-          temperature_K >= kColdest ? beyond : 0.0f};
-}
-
-inline Float4 color_at(const postrender::BlackBodyNode& node, float s) {
+inline Float4 color_at(const postrender::TableNode& node, float s) {
   const Float4 c0 = load<Float4>(&node.c[0]), c1 = load<Float4>(&node.c[1]), c2 = load<Float4>(&node.c[2]),
                c3 = load<Float4>(&node.c[3]);
   return c0 + s * (c1 + s * (c2 + s * c3));
 }
 
-/// Without `doppler` the colour is that at rest.
-void light_at_rest(const postrender::BlackBodyView& body, const postrender::Run& run,
-                   const postrender::Rgbx* colors, postrender::Rgbx* sum) {
-  const Float4 at_rest = load<Float4>(&body.at_rest);
-  for (std::size_t i = 0; i < run.count; ++i) {
-    const float g = run.shift[i];
-    const bool sensible = g > 0 && g < __builtin_inff();
-    const float factor = body.searchlight ? fourth_power(g) : 1.0f;
-    add(sum + i, run.weight[i] * ((sensible ? factor : 0.0f) * (load<Float4>(colors + i) * at_rest)));
+/// The table's colour, filtered component by component.
+void filtered_light(const postrender::TableView& table, const postrender::Lit& lit) {
+  Places at;
+  for (std::size_t first = 0; first < lit.count; first += kRow) {
+    const std::size_t count = lit.count - first < kRow ? lit.count - first : kRow;
+    find_places(table, lit, first, count, at);
+    for (std::size_t i = 0; i < count; ++i)
+      add(lit.sum + first + i,
+          at.weight[i] * (load<Float4>(lit.colors + first + i) * color_at(table.nodes[at.node[i]], at.s[i])));
   }
 }
 
-/// L(g lambda; T) = g^-5 B(lambda; g T): a look-up at g T.
-void black_body_light(const postrender::BlackBodyView& body, const postrender::Run& run,
-                      const postrender::Rgbx* colors, postrender::Rgbx* sum) {
-  if (!body.doppler) return light_at_rest(body, run, colors, sum);
-  constexpr std::size_t kRow = 64;
-  for (std::size_t first = 0; first < run.count; first += kRow) {
-    const std::size_t count = run.count - first < kRow ? run.count - first : kRow;
-    std::int32_t node[kRow];
-    float s[kRow], factor[kRow];
+/// Each component of the colour is the amount of one of three spectra.
+void mixed_light(const postrender::TableView& table, const postrender::Lit& lit) {
+  Places at;
+  for (std::size_t first = 0; first < lit.count; first += kRow) {
+    const std::size_t count = lit.count - first < kRow ? lit.count - first : kRow;
+    find_places(table, lit, first, count, at);
     for (std::size_t i = 0; i < count; ++i) {
-      const float g = run.shift[first + i];
-      const Seen seen = seen_at(g * body.temperature_K);
-      const float beamed = body.searchlight ? seen.factor : seen.factor / (g * fourth_power(g));
-      node[i] = seen.node;
-      s[i] = seen.s;
-      factor[i] = run.weight[first + i] * (g > 0 && g < __builtin_inff() ? beamed : 0.0f);
+      const postrender::Rgbx& amount = lit.colors[first + i];
+      const postrender::TableNode* node = table.nodes + at.node[i];
+      const Float4 light = amount.r * color_at(node[0], at.s[i]) + amount.g * color_at(node[1], at.s[i]) +
+                           amount.b * color_at(node[2], at.s[i]);
+      add(lit.sum + first + i, at.weight[i] * light);
     }
-    for (std::size_t i = 0; i < count; ++i)
-      add(sum + first + i,
-          factor[i] * (load<Float4>(colors + first + i) * color_at(body.nodes[node[i]], s[i])));
+  }
+}
+
+/// What the sensor sees of lines. In double precision, because its curves are steep, and the purest colours
+/// are small differences in linear sRGB.
+inline Float4 shifted_lines(const postrender::LinesView& lines, double g, double power) {
+  double seen[3] = {0, 0, 0};
+  for (std::size_t k = 0; k < lines.count; ++k) {
+    const double x = (lines.lines[k].wavelength_nm / g - lines.first_nm) * lines.per_nm;
+    if (!(x >= 0 && x < lines.last)) continue;
+    const auto low = static_cast<std::size_t>(x);
+    const double s = x - static_cast<double>(low), strength = lines.lines[k].strength;
+    const double *a = &lines.response[low][0], *b = a + 3;
+    for (int c = 0; c < 3; ++c) seen[c] = seen[c] + strength * (a[c] + s * (b[c] - a[c]));
+  }
+  return Float4{static_cast<float>(power * seen[0]), static_cast<float>(power * seen[1]),
+                static_cast<float>(power * seen[2]), 0};
+}
+
+void light_of_lines(const postrender::LinesView& lines, const postrender::Lit& lit) {
+  Places at;
+  for (std::size_t first = 0; first < lit.count; first += kRow) {
+    const std::size_t count = lit.count - first < kRow ? lit.count - first : kRow;
+    find_places(lines.power, lit, first, count, at);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (at.weight[i] == 0) continue;
+      const Float4 power = color_at(lines.power.nodes[at.node[i]], at.s[i]);
+      const Float4 seen =
+          shifted_lines(lines, static_cast<double>(lit.g[first + i]), static_cast<double>(power[0]));
+      add(lit.sum + first + i, at.weight[i] * (load<Float4>(lit.colors + first + i) * seen));
+    }
   }
 }
 

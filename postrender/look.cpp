@@ -31,10 +31,22 @@ PixelFilter parse_pixel_filter(JsonObject in) {
   return filter;
 }
 
+Beaming parse_beaming(JsonObject& in, std::string_view key) {
+  Beaming out;
+  if (!in.has(key)) return out;
+  JsonObject exponents = in.object(key);
+  out.spectral = exponents.number_or("spectral", out.spectral, -10, 10);
+  out.integrated = exponents.number_or("integrated", out.integrated, -10, 10);
+  exponents.finish();
+  return out;
+}
+
 Effects parse_effects(JsonObject in) {
   Effects out;
   out.doppler = in.boolean("doppler", true);
   out.searchlight = in.boolean("searchlight", true);
+  out.radiance = parse_beaming(in, "radiance_exponents");
+  out.irradiance = parse_beaming(in, "irradiance_exponents");
   in.finish();
   return out;
 }
@@ -46,6 +58,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
   Look look;
   if (in.has("objects")) look.objects = parse_objects(in.object("objects"), source, manifest);
   if (in.has("effects")) look.effects = parse_effects(in.object("effects"));
+  look.sensor = parse_sensor(in, "sensor", source);
   if (in.has("pixel_filter")) look.pixel_filter = parse_pixel_filter(in.object("pixel_filter"));
   look.develop = parse_develop(in);
   look.background = parse_color_or(in, "background", {});

@@ -16,6 +16,7 @@ namespace nullcone::postrender {
 struct Look {
   std::map<std::string, ObjectLook> objects;
   Effects effects;
+  std::shared_ptr<const Sensor> sensor = find_sensor("cie1931");
   PixelFilter pixel_filter;
   DevelopLook develop;
   Rgb background;  ///< linear

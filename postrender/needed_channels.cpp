@@ -32,9 +32,11 @@ void add_needs(const AppearanceLook& appearance, const std::string& pointer, con
     out.required.push_back({"uv", pointer + "/texture", "use a texture of type color"});
   if (has_footprint(texture))
     out.useful = out.useful | ChannelSet::of(manifest.channels.has("duv") ? "duv" : "order");
-  const bool black_body = appearance.spectrum && std::holds_alternative<BlackBodyLook>(*appearance.spectrum);
-  if (black_body) out.useful = out.useful | ChannelSet::of("shift");
-  if (black_body && effects.doppler) {
+  using Kind = SpectrumLook::Kind;
+  const Kind kind = appearance.spectrum ? appearance.spectrum->kind : Kind::display;
+  const bool spectral = kind != Kind::display && kind != Kind::total_radiance;
+  if (spectral) out.useful = out.useful | ChannelSet::of("shift");
+  if (spectral && effects.doppler) {
     out.required.push_back({"shift", "/effects/doppler", "switch the effect off"});
   } else if (effects.searchlight) {
     out.required.push_back({"shift", "/effects/searchlight", "switch the effect off"});

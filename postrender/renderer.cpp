@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/error.h"
 #include "postrender/color.h"
@@ -65,13 +66,22 @@ struct TextureMaker {
   }
 };
 
-struct SpectrumMaker {
-  Effects effects;
-  Spectrum operator()(const DisplayLook&) const { return DisplaySpectrum{effects}; }
-  Spectrum operator()(const BlackBodyLook& body) const {
-    return BlackBodySpectrum{effects, body.temperature_K};
+/// By object: the frequency ratios that its crossings have; (1, 1) where none is sensible.
+std::vector<ShiftRange> shift_ranges(const Dataset& dataset) {
+  const Hits& hits = dataset.hits;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::vector<ShiftRange> out(dataset.manifest.objects.size(), {kInfinity, 0});
+  for (std::size_t i = 0; i < hits.shift.size(); ++i) {
+    ShiftRange& range = out[hits.id[i] - 1];
+    const float g = hits.shift[i];
+    if (!(g > 0 && g < kInfinity)) continue;
+    range.from = std::min(range.from, g);
+    range.to = std::max(range.to, g);
   }
-};
+  for (ShiftRange& range : out)
+    if (!(range.from <= range.to)) range = {};
+  return out;
+}
 
 }  // namespace
 
@@ -79,28 +89,33 @@ Renderer::Renderer(Dataset dataset, const Kernel& kernel)
     : manifest_(check_records(dataset).manifest),
       dataset_(by_samples(std::move(dataset))),
       one_each_(lines_with_one_each(dataset_)),
+      shifts_(shift_ranges(dataset_)),
       kernel_(kernel) {}
 
-std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& look, double opacity,
-                                     Rgb fallback, Effects effects) {
-  const SpectrumLook spectrum = look.spectrum.value_or(DisplayLook{});
-  // A body that radiates by itself needs no colour; one that is shown as it is gets its flat one.
-  const Rgb plain = std::holds_alternative<BlackBodyLook>(spectrum) ? Rgb{1, 1, 1} : fallback;
-  const TextureLook texture = look.texture.value_or(ColorTexture{plain});
+std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& own, double opacity,
+                                     std::uint32_t id, const Look& look) {
+  const SpectrumLook spectrum = own.spectrum.value_or(SpectrumLook{});
+  // What radiates by itself needs no colour; what is shown as it is gets its flat one.
+  const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
+  const TextureLook texture = own.texture.value_or(ColorTexture{plain});
+  const ShiftRange shifts = shifts_[id - 1];
   shading.appearances.push_back({std::visit(TextureMaker{textures_}, texture),
-                                 std::visit(SpectrumMaker{effects}, spectrum), static_cast<float>(opacity)});
+                                 lights_.get(spectrum, look.effects, *look.sensor, shifts),
+                                 static_cast<float>(opacity)});
+  const std::string unknown = unknown_wavelengths(spectrum, look.effects, *look.sensor, shifts);
+  if (!unknown.empty()) shading.notes.push_back(manifest_.objects[id - 1].name + ": " + unknown);
   return shading.appearances.size() - 1;
 }
 
 Shading Renderer::prepare(const Look& look) {
   check_channels(look, manifest_, dataset_.hits.channels, "dataset");
-  Shading shading{{}, {}, look.background};
+  Shading shading{{}, {}, look.background, {}};
   for (std::uint32_t id = 1; id <= manifest_.objects.size(); ++id) {
     const ObjectEntry& entry = manifest_.objects[id - 1];
     const auto found = look.objects.find(entry.name);
     const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
     const auto add = [&](const AppearanceLook& appearance) {
-      return add_appearance(shading, appearance, object.opacity, default_color(id), look.effects);
+      return add_appearance(shading, appearance, object.opacity, id, look);
     };
     ObjectShading out{entry.tau_origin, add(object.appearance), {}};
     for (const TimeSliceLook& slice : object.time_slices)
@@ -213,7 +228,10 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   } else {
     shade_and_develop(shading, look.develop, image);
   }
-  if (!same) textures_.prune();
+  if (!same) {
+    textures_.prune();
+    lights_.prune();
+  }
   filter_ = look.pixel_filter;
   shaded_ = std::move(shading);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/record/dataset.h"
+#include "postrender/light_tables.h"
 #include "postrender/look.h"
 #include "postrender/shade.h"
 #include "postrender/texture_cache.h"
@@ -35,8 +36,8 @@ class Renderer {
   void render(const Look& look, const ImageParts& parts, Image& image);
 
  private:
-  std::size_t add_appearance(Shading& shading, const AppearanceLook& look, double opacity, Rgb fallback,
-                             Effects effects);
+  std::size_t add_appearance(Shading& shading, const AppearanceLook& own, double opacity, std::uint32_t id,
+                             const Look& look);
 
   void keep_radiance(const Shading& shading);
   void keep_filtered(const Shading& shading, const PixelFilter& filter);
@@ -46,7 +47,9 @@ class Renderer {
   Manifest manifest_;
   Dataset dataset_;
   std::vector<std::uint8_t> one_each_;  ///< lines_with_one_each()
+  std::vector<ShiftRange> shifts_;      ///< by object
   const Kernel& kernel_;
+  LightTables lights_;
   TextureCache textures_;
   std::optional<Shading> shaded_;  ///< of the last picture
   PixelFilter filter_;             ///< of the last picture

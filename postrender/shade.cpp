@@ -31,21 +31,16 @@ struct TextureColors {
   }
 };
 
-struct SeenLight {
-  const Kernel& kernel;
-  const Run& run;
-  const Rgbx* colors;
-  Rgbx *display, *physical;
-  void operator()(const DisplaySpectrum& spectrum) const {
-    kernel.display(spectrum.effects.searchlight, run, colors, display);
-  }
-  void operator()(const BlackBodySpectrum& body) const {
-    const BlackBodyTable& table = BlackBodyTable::instance();
-    kernel.black_body({table.nodes(), static_cast<float>(body.temperature_K), body.effects.doppler,
-                       body.effects.searchlight, table.color_cd_m2(body.temperature_K)},
-                      run, colors, physical);
-  }
-};
+void add_light(const Kernel& kernel, const Light& light, const Lit& lit) {
+  if (!light.table) return kernel.plain(lit);
+  const TableView table = light.table->view();
+  (table.stride == 1 ? kernel.filtered : kernel.mixed)(table, lit);
+  if (!light.lines) return;
+  const LineTable& lines = *light.lines;
+  kernel.lines({lines.lines.data(), lines.lines.size(), lines.first_nm, 1 / lines.step_nm,
+                static_cast<double>(lines.response.size() - 1), lines.response.data(), lines.power->view()},
+               lit);
+}
 
 /// Where the run of equal values that begins at `first` ends.
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t first) {
@@ -77,9 +72,8 @@ bool lets_light_through(const Appearance& appearance) {
 }  // namespace
 
 bool has_physical(const Shading& shading) {
-  return std::ranges::any_of(shading.appearances, [](const Appearance& appearance) {
-    return std::holds_alternative<BlackBodySpectrum>(appearance.spectrum);
-  });
+  return std::ranges::any_of(shading.appearances,
+                             [](const Appearance& appearance) { return appearance.light.physical; });
 }
 
 LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one_each, const Shading& shading,
@@ -171,10 +165,10 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearan
   const Layer& here = lines[1];
   const bool known = has_alpha(appearance.texture);
   if (!known) look_up(lines, appearance, first, count, colors_.data());
-  const Run run = {count, here.u + first, here.v + first, here.shift + first, weight_.data() + first, {}};
-  std::visit(SeenLight{kernel_, run, known ? &clear_colors_[first] : colors_.data(), display + first,
-                       physical == nullptr ? nullptr : physical + first},
-             appearance.spectrum);
+  Rgbx* sum = appearance.light.physical ? physical : display;
+  add_light(kernel_, appearance.light,
+            {count, here.shift + first, weight_.data() + first,
+             known ? &clear_colors_[first] : colors_.data(), sum + first});
 }
 
 /// The crossings of one rank. Lines above and below are looked at for footprints only.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -16,12 +17,11 @@
 namespace nullcone::postrender {
 
 using Texture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture>;
-using Spectrum = std::variant<DisplaySpectrum, BlackBodySpectrum>;
 
 /// How a surface looks, ready for pixels.
 struct Appearance {
   Texture texture;
-  Spectrum spectrum;
+  Light light;
   float opacity = 1;  ///< times that of the crossing; 0: not seen at all
   bool operator==(const Appearance&) const = default;
 };
@@ -47,6 +47,7 @@ struct Shading {
   std::vector<Appearance> appearances;
   std::vector<ObjectShading> objects;  ///< by id - 1
   Rgb background;                      ///< display colour behind everything
+  std::vector<std::string> notes;      ///< what the user should know of it
   bool operator==(const Shading&) const = default;
 };
 

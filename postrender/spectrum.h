@@ -1,35 +1,105 @@
-// What a surface radiates and what of it is seen: the four combinations of effects.
+// What of a surface's light is seen: the four combinations of effects, and exponents to compare with.
 //
 //   neither      L(lambda)           doppler alone  L(g lambda)
 //   searchlight  g^4 L(lambda)       both           g^5 L(g lambda)   (docs/physics.md)
 //
-// g = observed / emitted frequency. The pixel loops are in kernel_spectrum.h.
+// g = observed / emitted frequency. Before pixels are shaded, each spectrum is folded with the sensor and
+// multiplied by its power of g, over the range of g that the dataset holds: a table, whatever the spectrum,
+// the sensor, the effects and the exponents. The pixel loops are in kernel_spectrum.h.
 #pragma once
 
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "postrender/image.h"
+#include "postrender/spectral_distribution.h"
+
 namespace nullcone::postrender {
+
+/// How many powers of g beaming brings: of spectral quantities (where wavelengths are shifted too), and of
+/// those that are integrated over all wavelengths.
+struct Beaming {
+  double spectral = 5, integrated = 4;
+  bool operator==(const Beaming&) const = default;
+};
 
 struct Effects {
   bool doppler = true;      ///< wavelengths are shifted
   bool searchlight = true;  ///< radiance is beamed
+  Beaming radiance;         ///< Weiskopf, Kraus and Ruder 1999, eqs. (14) and (15)
+  Beaming irradiance;       ///< their eqs. (18) and (19), for light that falls on surfaces
   bool operator==(const Effects&) const = default;
+
+  /// The power of g that multiplies L(g lambda) or L(lambda).
+  double power() const { return !searchlight ? 0 : doppler ? radiance.spectral : radiance.integrated; }
+  /// The power for what has no spectrum that could be shifted.
+  double power_without_spectrum() const { return searchlight ? radiance.integrated : 0; }
 };
 
-/// The texture's colours, whatever the shift: they have no spectrum that `doppler` could shift.
-struct DisplaySpectrum {
-  static constexpr bool kPhysical = false;
-  Effects effects;
-  bool operator==(const DisplaySpectrum&) const = default;
+/// Frequency ratios from..to, both positive and finite.
+struct ShiftRange {
+  float from = 1, to = 1;
+  bool operator==(const ShiftRange&) const = default;
 };
 
-/// A black body in cd/m^2, seen through the texture's colours as a filter (componentwise in linear sRGB).
-/// L(g lambda; T) = g^-5 B(lambda; g T), so that every combination is a look-up at T or g T. Black where g is
-/// not positive and finite.
-struct BlackBodySpectrum {
-  static constexpr bool kPhysical = true;
-  Effects effects;
-  double temperature_K;
+/// From one node of a table to the next: c[0] + c[1] s + c[2] s^2 + c[3] s^3, s from 0 to 1. One cache line.
+struct alignas(64) TableNode {
+  std::array<Rgbx, 4> c;
+};
 
-  bool operator==(const BlackBodySpectrum&) const = default;
+/// A table as pixel loops see it. Nodes stand where the upper bits of the float g change.
+struct TableView {
+  const TableNode* nodes;
+  float from, to;
+  std::int32_t unused_bits;  ///< of g's mantissa between two nodes
+  std::int32_t first;        ///< upper bits at the first node
+  std::int32_t stride;       ///< nodes that stand side by side for one g: 1, or 3 for red, green and blue
+};
+
+/// One or three colours (linear sRGB) by g, by cubic interpolation between nodes that grow denser until the
+/// error is below kTableError, or until they take kTableBytes.
+class SpectralTable {
+ public:
+  /// Components beyond kBrightest are scaled down to it, the three alike.
+  using Colors = std::function<std::array<double, 3>(double g)>;
+  SpectralTable(const std::vector<Colors>& colors, ShiftRange range);
+
+  TableView view() const;
+  /// The greatest error found between the samples, relative to the largest component of the colour there, or
+  /// to a hundredth of the largest within half an octave of g, where that is more.
+  double error() const { return error_; }
+  std::size_t bytes() const { return nodes_.size() * sizeof(TableNode); }
+
+ private:
+  ShiftRange range_;
+  std::int32_t unused_bits_ = 0, first_ = 0, stride_ = 1;
+  std::vector<TableNode> nodes_;
+  double error_ = 0;
+};
+
+inline constexpr double kTableError = 3e-8;
+inline constexpr std::size_t kTableBytes = std::size_t{1} << 20;
+inline constexpr double kBrightest = 1e28;
+
+/// Spectral lines, which no table resolves: each is looked up in the sensor's own curves.
+struct LineTable {
+  struct Line {
+    double wavelength_nm, strength;
+  };
+  std::vector<Line> lines;
+  double first_nm = 0, step_nm = 1;
+  std::vector<std::array<double, 3>> response;  ///< of the sensor, in linear sRGB
+  std::shared_ptr<const SpectralTable> power;  ///< of g
+};
+
+/// What is seen of a surface by g, times the colour of its texture.
+struct Light {
+  std::shared_ptr<const SpectralTable> table;  ///< null: the texture's colours as they are
+  std::shared_ptr<const LineTable> lines;      ///< null: none
+  bool physical = false;                       ///< in cd/m^2 (or the sensor's unit); else display colours
+  bool operator==(const Light&) const = default;
 };
 
 }  // namespace nullcone::postrender

@@ -11,11 +11,16 @@ namespace {
 /// Linear sRGB in cd/m^2 of what is seen of a black body, straight from the definition: no g T anywhere.
 std::array<double, 3> integrated(double T, double g, bool doppler, bool searchlight) {
   const double power = doppler && searchlight ? std::pow(g, 5) : searchlight ? std::pow(g, 4) : 1.0;
+  constexpr int kParts = 100;  // midpoints within each 5 nm
   Xyz sum{};
-  for (std::size_t i = 0; i < kCmfSamples; ++i) {
-    const double wavelength_m = 1e-9 * (kCmfFirst_nm + kCmfStep_nm * static_cast<double>(i));
-    const double L = power * planck_W_m3_sr(doppler ? g * wavelength_m : wavelength_m, T);
-    for (std::size_t j = 0; j < 3; ++j) sum[j] += 683 * 5e-9 * kCie1931[i][j] * L;
+  for (int i = 0; i < kParts * static_cast<int>(kCmfSamples - 1); ++i) {
+    const double nm = kCmfFirst_nm + (i + 0.5) * kCmfStep_nm / kParts;
+    const auto k = static_cast<std::size_t>(i / kParts);
+    const double L = power * planck_W_m3_sr(1e-9 * (doppler ? g * nm : nm), T);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double cmf = std::lerp(kCie1931[k][j], kCie1931[k + 1][j], (i % kParts + 0.5) / kParts);
+      sum[j] += 683 * 5e-9 / kParts * cmf * L;
+    }
   }
   return linear_srgb(sum);
 }
@@ -26,33 +31,37 @@ TEST(Effects, agree_with_direct_integration) {
       for (const bool doppler : {false, true})
         for (const bool searchlight : {false, true}) {
           const auto expected = integrated(T, static_cast<double>(g), doppler, searchlight);
-          const Rgb found = seen(BlackBodySpectrum{{doppler, searchlight}, T}, {1, 1, 1}, g);
+          const Rgb found = seen(R"({"type":"black_body","temperature_K":)" + std::to_string(T) + "}",
+                                 {1, 1, 1}, g, {doppler, searchlight, {}, {}});
           const double scale = std::max({std::abs(expected[0]), expected[1], expected[2]});
-          // 3e-5: the table (see its own test).
-          EXPECT_NEAR(static_cast<double>(found.r), expected[0], 3e-5 * scale)
+          // 3e-6: the midpoint rule at 450 K (1500 K, g = 0.3); everything else is below 5e-7.
+          EXPECT_NEAR(static_cast<double>(found.r), expected[0], 3e-6 * scale)
               << T << " " << g << doppler << searchlight;
-          EXPECT_NEAR(static_cast<double>(found.g), expected[1], 3e-5 * scale)
+          EXPECT_NEAR(static_cast<double>(found.g), expected[1], 3e-6 * scale)
               << T << " " << g << doppler << searchlight;
-          EXPECT_NEAR(static_cast<double>(found.b), expected[2], 3e-5 * scale)
+          EXPECT_NEAR(static_cast<double>(found.b), expected[2], 3e-6 * scale)
               << T << " " << g << doppler << searchlight;
         }
 }
 
 TEST(Effects, display_colors_are_beamed_but_not_shifted) {
   const Rgb c{0.5f, 0.25f, 0.125f};
-  EXPECT_EQ(seen(DisplaySpectrum{{true, false}}, c, 2.0f), c);
-  EXPECT_EQ(seen(DisplaySpectrum{{false, false}}, c, 2.0f), c);
-  EXPECT_EQ(seen(DisplaySpectrum{{false, true}}, c, 2.0f), 16.0f * c);
-  EXPECT_EQ(seen(DisplaySpectrum{{true, true}}, c, 0.5f), 0.0625f * c);
+  const std::string display = R"({"type":"display"})";
+  EXPECT_EQ(seen(display, c, 2.0f, {true, false, {}, {}}), c);
+  EXPECT_EQ(seen(display, c, 2.0f, {false, false, {}, {}}), c);
+  expect_color(seen(display, c, 2.0f, {false, true, {}, {}}), 16.0f * c, 1e-6f * 8);
+  expect_color(seen(display, c, 0.5f, {true, true, {}, {}}), 0.0625f * c, 1e-6f * 0.03f);
 }
 
 TEST(Effects, senseless_shifts_are_black) {
   for (const float g : {0.0f, -1.0f, std::nanf(""), INFINITY})
-    EXPECT_EQ(seen(BlackBodySpectrum{{}, 5000}, {1, 1, 1}, g), Rgb{});
+    for (const char* spectrum : {R"({"type":"black_body","temperature_K":5000})", R"({"type":"rgb"})",
+                                 R"({"type":"lines","lines":[[500,1]]})", R"({"type":"total_radiance"})"})
+      EXPECT_EQ(seen(spectrum, {1, 1, 1}, g), Rgb{}) << spectrum;
 }
 
 TEST(Effects, a_texture_filters_a_black_body) {
-  const BlackBodySpectrum sun{{}, 5762};
+  const std::string sun = R"({"type":"black_body","temperature_K":5762})";
   const Rgb bare = seen(sun, {1, 1, 1}, 1), filtered = seen(sun, {0.5f, 0, 1}, 1);
   EXPECT_EQ(filtered, (Rgb{0.5f * bare.r, 0, bare.b}));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -84,11 +85,11 @@ inline Image picture(Dataset data, const std::string& text, const std::string& f
 }
 
 /// What is seen of one colour with the frequency ratio g, the same with every instruction set.
-inline Rgb seen(const Spectrum& spectrum, Rgb color, float g) {
+inline Rgb seen(const Light& light, Rgb color, float g) {
   TestHit hit;
   hit.shift = g;
   const Dataset data = one_pixel({hit});
-  const Shading shading = {{{ColorTexture{color}, spectrum}}, {{0, 0, {}}}, {}};
+  const Shading shading = {{{ColorTexture{color}, light}}, {{0, 0, {}}}, {}, {}};
   const bool physical = has_physical(shading);
   Rgb first;
   for (const Kernel* kernel : kernels()) {
@@ -99,6 +100,19 @@ inline Rgb seen(const Spectrum& spectrum, Rgb color, float g) {
     EXPECT_EQ(found, first) << kernel->isa;
   }
   return first;
+}
+
+/// A spectrum as a look writes it.
+inline SpectrumLook spectrum_of(const std::string& text, const std::string& folder = "") {
+  const nlohmann::json document = nlohmann::json::parse(text);
+  return parse_spectrum(JsonObject(document, "look.json", ""), {"look.json", "", folder});
+}
+
+/// What is seen of a spectrum behind one colour, by a table over [g/2, 2g].
+inline Rgb seen(const std::string& spectrum, Rgb color, float g, Effects effects = {}) {
+  const float at = g > 0 && g < INFINITY ? g : 1;
+  return seen(LightTables().get(spectrum_of(spectrum), effects, standard_observer(), {at / 2, 2 * at}), color,
+              g);
 }
 
 /// One colour, developed with every instruction set alike.

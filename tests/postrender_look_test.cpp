@@ -89,7 +89,7 @@ TEST(Looks, unknown_objects_are_told_which_there_are) {
 
 TEST(Looks, empty_look_is_the_default) {
   const Look look = look_of("{}", two_objects());
-  EXPECT_EQ(look.effects, (Effects{true, true}));
+  EXPECT_EQ(look.effects, (Effects{true, true, {}, {}}));
   EXPECT_FALSE(look.develop.white_cd_m2);
   EXPECT_EQ(look.background, Rgb{});
   // Objects get flat colours by their numbers; where nothing is hit, the background shows.
