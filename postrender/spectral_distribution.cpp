@@ -139,6 +139,28 @@ struct Scaled final : SpectralDistribution {
   }
 };
 
+struct Shifted final : SpectralDistribution {
+  AnySpectrum spectrum;
+  double g;
+  Shifted(AnySpectrum from, double ratio) : spectrum(std::move(from)), g(ratio) {}
+  double at(double nm) const override { return spectrum->at(g * nm); }
+  std::vector<SpectralLine> lines() const override {
+    std::vector<SpectralLine> out = spectrum->lines();
+    for (SpectralLine& line : out) line = {line.wavelength_nm / g, line.strength / g};
+    return out;
+  }
+  std::vector<double> knots() const override {
+    std::vector<double> out = spectrum->knots();
+    for (double& nm : out) nm /= g;
+    return out;
+  }
+  bool is_linear() const override { return spectrum->is_linear(); }
+  Band known() const override { return {spectrum->known().from / g, spectrum->known().to / g}; }
+  std::array<double, 3> fold(const Sensor& sensor, double ratio) const override {
+    return spectrum->fold(sensor, g * ratio);
+  }
+};
+
 struct Product final : SpectralDistribution {
   AnySpectrum light, reflectance;
   Product(AnySpectrum of, AnySpectrum by) : light(std::move(of)), reflectance(std::move(by)) {}
@@ -231,6 +253,9 @@ AnySpectrum gaussian(double value, double centre_nm, double sigma_nm) {
 AnySpectrum sum(std::vector<AnySpectrum> parts) { return std::make_shared<Sum>(std::move(parts)); }
 AnySpectrum scaled(AnySpectrum spectrum, double factor) {
   return std::make_shared<Scaled>(std::move(spectrum), factor);
+}
+AnySpectrum shifted(AnySpectrum spectrum, double g) {
+  return std::make_shared<Shifted>(std::move(spectrum), g);
 }
 AnySpectrum product(AnySpectrum light, AnySpectrum reflectance) {
   return std::make_shared<Product>(std::move(light), std::move(reflectance));

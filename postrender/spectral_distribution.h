@@ -60,6 +60,8 @@ AnySpectrum power_law(double value, double at_nm, double index);
 AnySpectrum gaussian(double value, double centre_nm, double sigma_nm);
 AnySpectrum sum(std::vector<AnySpectrum> parts);
 AnySpectrum scaled(AnySpectrum spectrum, double factor);
+/// L(g lambda): what is left of the power to the effects. Lines move to mu/g, with 1/g of their strength.
+AnySpectrum shifted(AnySpectrum spectrum, double g);
 /// Light on a surface: the product. At most one of the two may have lines.
 AnySpectrum product(AnySpectrum light, AnySpectrum reflectance);
 

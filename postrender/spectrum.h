@@ -91,7 +91,7 @@ struct LineTable {
   std::vector<Line> lines;
   double first_nm = 0, step_nm = 1;
   std::vector<std::array<double, 3>> response;  ///< of the sensor, in linear sRGB
-  std::shared_ptr<const SpectralTable> power;  ///< of g
+  std::shared_ptr<const SpectralTable> power;   ///< of g
 };
 
 /// What is seen of a surface by g, times the colour of its texture.

@@ -4,6 +4,7 @@
 
 #include "postrender/black_body.h"
 #include "postrender/light_tables.h"
+#include "postrender/lit_table.h"
 #include "postrender/rgb_basis.h"
 #include "tests/postrender_fixture.h"
 
@@ -279,6 +280,45 @@ TEST(Spectrum, materials_that_look_alike_at_rest_differ_when_shifted) {
   EXPECT_GT(wood.g, wood.b);
   EXPECT_GT(std::abs(luminance(at("green_on_wood.csv", 2)) - luminance(at("green_on_aluminium.csv", 2))),
             0.1f);
+}
+
+TEST(LitSurface, two_shifts_are_as_in_the_integral) {
+  const AnySpectrum sun = black_body(5762),
+                    paint =
+                        spectrum_of(R"({"type":"tabulated","file":"green_on_wood.csv"})", NULLCONE_TEST_DATA)
+                            .spectra[0];
+  for (const Effects& effects :
+       {Effects{}, Effects{true, false, {}, {}}, Effects{true, true, {1, 1}, {1, 1}}}) {
+    const LitTable table(sun, paint, effects, standard_observer(), {0.6f, 1.8f}, {0.5f, 2.0f});
+    std::printf("lit: error %.2g, %zu bytes\n", table.error(), table.bytes());
+    EXPECT_LT(table.error(), 2e-4);
+    for (const auto& [g, g_light] : {std::pair{0.71f, 1.9f}, {1.0f, 1.0f}, {1.63f, 0.533f}}) {
+      const double a = static_cast<double>(g), b = static_cast<double>(g_light);
+      // Straight from the definition: L_obs(lambda) = g^5 rho(g lambda) E(g lambda), E(l) = g_light^5
+      // I(g_light l).
+      Color expected =
+          simpson([&](double nm) { return paint->at(nm) * sun->at(b * nm); }, standard_observer(), a);
+      expected = standard_observer().rgb(expected);
+      const double factor = std::pow(a * b, effects.power());
+      const Rgb found = table.color(g, g_light);
+      const double scale = factor * std::max({std::abs(expected[0]), expected[1], expected[2]});
+      EXPECT_NEAR(static_cast<double>(found.r), factor * expected[0], 2e-4 * scale);
+      EXPECT_NEAR(static_cast<double>(found.g), factor * expected[1], 2e-4 * scale);
+      EXPECT_NEAR(static_cast<double>(found.b), factor * expected[2], 2e-4 * scale);
+    }
+    EXPECT_EQ(table.color(std::nanf(""), 1), Rgb{});
+    EXPECT_EQ(table.color(1, 0), Rgb{});
+  }
+}
+
+TEST(LitSurface, a_white_one_under_a_black_body_is_the_black_body_of_both_shifts) {
+  const LitTable table(black_body(5762), constant(1), {}, standard_observer(), {0.6f, 1.8f}, {0.5f, 2.0f});
+  EXPECT_LT(table.error(), 2e-6);
+  for (const float g_light : {0.6f, 1.1f, 1.7f}) {
+    const float g = 1.21f;
+    const Rgb expected = seen(R"({"type":"black_body","temperature_K":5762})", {1, 1, 1}, g * g_light);
+    expect_color(table.color(g, g_light), expected, 4e-6f * std::max(expected.r, expected.b));
+  }
 }
 
 TEST(Spectrum, missing_wavelengths_are_named) {
