@@ -1,5 +1,6 @@
 #include "apps/geodesic_outline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -73,12 +74,23 @@ std::vector<PlanePoint> sphere_outline(const Projection& A, double radius) {
   return out;
 }
 
-std::vector<PlanePoint> quad_outline(const Projection& A, const Object& object) {
-  std::vector<PlanePoint> out;
-  const Vector x = 0.5 * object.shape.edges[0] * Vector{object.placing.axes[0]},
-               y = 0.5 * object.shape.edges[1] * Vector{object.placing.axes[1]};
-  for (const auto& [sx, sy] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
-    out.push_back(A(sx * x + sy * y));
+/// Of a box or a quad: its edges, as they are seen from above, once round in the order of their directions.
+std::vector<PlanePoint> box_outline(const Projection& A, const Object& object) {
+  std::vector<PlanePoint> edges, out;
+  PlanePoint corner = A.centre;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector X = object.shape.edges[i] * Vector{object.placing.axes[i]};
+    PlanePoint edge = {dot(A.rows[0], X), dot(A.rows[1], X)};
+    if (edge[1] < 0) edge = {-edge[0], -edge[1]};
+    if (edge[0] != 0 || edge[1] != 0) edges.push_back(edge);
+    for (std::size_t k = 0; k < 2; ++k) corner[k] -= 0.5 * edge[k];
+  }
+  std::ranges::sort(edges, {}, [](const PlanePoint& edge) { return std::atan2(edge[1], edge[0]); });
+  for (const double way : {1.0, -1.0})
+    for (const PlanePoint& edge : edges) {
+      out.push_back(corner);
+      for (std::size_t k = 0; k < 2; ++k) corner[k] += way * edge[k];
+    }
   return out;
 }
 
@@ -104,10 +116,11 @@ std::vector<Stroke> object_outlines(const Inquiry& inquiry, double time) {
     for (const HitRecord& hit : traced.hits)
       if (hit.id == i + 1) tau = hit.tau + traced.tau_origins[i];
     const Projection A = projection(inquiry, object, time, tau);
-    const bool quad = object.shape.type == ShapeType::quad;
-    const auto kind = quad || object.shape.dome ? Stroke::Kind::outline : Stroke::Kind::filled;
-    out.push_back({kind, kColors[i % kColors.size()], object.name,
-                   quad ? quad_outline(A, object) : sphere_outline(A, object.shape.radius)});
+    const bool open = object.shape.type == ShapeType::quad || object.shape.dome;
+    out.push_back({open ? Stroke::Kind::outline : Stroke::Kind::filled, kColors[i % kColors.size()],
+                   object.name,
+                   object.shape.type == ShapeType::sphere ? sphere_outline(A, object.shape.radius)
+                                                          : box_outline(A, object)});
   }
   return out;
 }

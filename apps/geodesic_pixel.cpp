@@ -60,7 +60,7 @@ double well_outside(const Scene& scene) {
     const Event& p = object.placing.worldline.event;
     const double size = object.shape.type == ShapeType::sphere
                             ? object.shape.radius
-                            : length(object.shape.edges[0], object.shape.edges[1], 0);
+                            : length(object.shape.edges[0], object.shape.edges[1], object.shape.edges[2]);
     farthest = std::max(
         {farthest, length(p[1], p[2], p[3]) + size, length(p[1] - o[1], p[2] - o[2], p[3] - o[3]) + size});
   }

@@ -31,6 +31,8 @@ std::vector<std::string> scenes() {
       {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0, 0.9, 0.1]}}},
     {"name": "card", "shape": {"type": "quad", "edges": [3, 2]}, "placing": {"type": "local", "worldline":
       {"type": "geodesic", "event": [0, 5, 1, 1], "velocity": [-0.2, 0, 0.5]}, "z_axis": [-1, 0.2, 0.1]}},
+    {"name": "train", "shape": {"type": "box", "edges": [3, 1, 2]}, "placing": {"type": "local", "worldline":
+      {"type": "geodesic", "event": [0, 5, -2, 1], "velocity": [0.6, 0.3, 0]}, "z_axis": [0.3, 0.2, 1]}},
     {"name": "heaven", "shape": {"type": "sky"}}]})";
   const std::string resting = R"({"metric": {"name": "minkowski"}, "observer": {"event": [0, 0, 0, 0]},
     "camera": {"type": "sphere", "resolution": [360, 181]}, "max_lookback": 50, "objects": [
@@ -39,7 +41,9 @@ std::vector<std::string> scenes() {
     {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": {"type": "local", "worldline":
       {"type": "static", "event": [0, 2, 1, 0.5]}}},
     {"name": "wall", "shape": {"type": "quad", "edges": [2, 2]}, "placing": {"type": "coordinate", "centre": [-3, 0, 0],
-      "z_axis": [1, 0, 0]}}]})";
+      "z_axis": [1, 0, 0]}},
+    {"name": "house", "shape": {"type": "box", "edges": [1, 2, 0.5]}, "placing": {"type": "local", "worldline":
+      {"type": "static", "event": [0, 0.5, -2, 1]}, "z_axis": [1, 1, 1]}}]})";
   // Integrated: some lanes of a pack fall into the hole, some escape, some meet objects.
   const std::string hole =
       R"({"metric": {"name": "kerr_schild", "spin": 0.9}, "observer": {"event": [0, 9, 0, 2]},
@@ -47,6 +51,7 @@ std::vector<std::string> scenes() {
     "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": 1}, "placing": {"type": "local", "worldline":
       {"type": "static", "event": [0, -5, 2, 1]}}},
     {"name": "plate", "shape": {"type": "quad", "edges": [9, 9]}, "placing": {"type": "coordinate", "centre": [0, 0, -3]}},
+    {"name": "house", "shape": {"type": "box", "edges": [2, 3, 1]}, "placing": {"type": "coordinate", "centre": [-4, -4, 1]}},
     {"name": "heaven", "shape": {"type": "sky"}}]})";
   const std::string wormhole = R"({"metric": {"name": "ellis_wormhole"}, "observer": {"event": [0, 5, 0, 0]},
     "camera": {"type": "perspective", "azimuth_deg": 180, "fov_deg": 60, "resolution": [61, 47]}, "accuracy": "draft",

@@ -253,6 +253,7 @@ TEST(Scene, ExtremeSizesAndPlacesAreSurvived) {
                                  std::to_string(event[0]) + ", x " + std::to_string(event[1]);
         for (const json& shape :
              {json{{"type", "sphere"}, {"radius", size}}, json{{"type", "quad"}, {"edges", {size, 1e-300}}},
+              json{{"type", "box"}, {"edges", {size, 1e-300, size}}},
               json{{"type", "sphere"}, {"radius", size}, {"dome", true}}}) {
           json scene = small_scene(metric, {object_at("o", shape, event)});
           survives(scene.dump(), what + " " + shape.dump());

@@ -62,4 +62,23 @@ Dual<S, N> log(const Dual<S, N>& x) {
   return {log(x.v), (S(1.0) / x.v) * x.d};
 }
 
+template <class S, std::size_t N>
+Dual<S, N> select(const Mask<S>& choose, const Dual<S, N>& a, const Dual<S, N>& b) {
+  return {select(choose, a.v, b.v), select(choose, a.d, b.d)};
+}
+
+/// The value without its derivatives.
+template <class S>
+const S& plain(const S& x) {
+  return x;
+}
+template <class S, std::size_t N>
+const S& plain(const Dual<S, N>& x) {
+  return x.v;
+}
+template <class S, std::size_t N, std::size_t M>
+Vec<S, M> plain(const Vec<Dual<S, N>, M>& x) {
+  return Vec<S, M>::map([&](std::size_t i) { return x[i].v; });
+}
+
 NULLCONE_KERNEL_END

@@ -1,5 +1,6 @@
 #include "core/scene/read_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -141,15 +142,16 @@ Camera read_camera(JsonObject camera) {
 
 Shape read_shape(JsonObject shape, const MetricDescription& metric) {
   Shape out;
-  const std::string type = shape.word("type", {"sphere", "quad", "sky"});
+  const std::string type = shape.word("type", {"sphere", "quad", "box", "sky"});
   if (type == "sphere") {
     out.type = ShapeType::sphere;
     out.radius = shape.positive("radius");
     if (out.radius > kLargest) shape.refuse("radius", "expected at most 1e15");
     out.dome = shape.boolean("dome", false);
-  } else if (type == "quad") {
-    out.type = ShapeType::quad;
-    out.edges = to_array<2>(shape.numbers("edges", 2, 1e-300, kLargest));
+  } else if (type == "quad" || type == "box") {
+    out.type = type == "quad" ? ShapeType::quad : ShapeType::box;
+    const auto edges = shape.numbers("edges", type == "quad" ? 2 : 3, 1e-300, kLargest);
+    std::ranges::copy(edges, out.edges.begin());
   } else {
     out.type = ShapeType::sky;
     out.sky = shape.has("side") ? static_cast<unsigned>(shape.integer("side", 1, 2)) : 1;

@@ -41,16 +41,16 @@ struct Accuracy {
 /// What scenes may name; set by the study in docs/accuracy.md.
 inline constexpr Accuracy kDraft{1e-4, 0, Integrator::verner65}, kBalanced{}, kReference{1e-12};
 
-enum class ShapeType { sphere, quad, sky };
+enum class ShapeType { sphere, quad, box, sky };
 
-/// Shapes in their own frame: a sphere about the origin; a quad in the xy plane, centred, normal +z; the sky
-/// at infinity, by direction.
+/// Shapes in their own frame: a sphere or a box about the origin; a quad in the xy plane, centred, normal +z;
+/// the sky at infinity, by direction.
 struct Shape {
   ShapeType type = ShapeType::sphere;
-  double radius = 0;                     ///< sphere
-  bool dome = false;                     ///< sphere: seen from inside
-  std::array<double, 2> edges = {0, 0};  ///< quad: lengths along x and y
-  unsigned sky = 1;                      ///< sky: of which infinity, from 1
+  double radius = 0;                        ///< sphere
+  bool dome = false;                        ///< sphere: seen from inside
+  std::array<double, 3> edges = {0, 0, 0};  ///< box: lengths along x, y and z; quad: along x and y
+  unsigned sky = 1;                         ///< sky: of which infinity, from 1
 };
 
 enum class PlacingType {

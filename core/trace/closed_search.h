@@ -15,11 +15,10 @@ struct Placed {
 };
 template <class M>
 using AnyPlaced =
-    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, Quad>,
-                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Quad>,
+    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, Box>,
+                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Box>,
                  Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
-                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
-                 Placed<MovingPlacing<M>, LocalBody<M>, Quad>>;
+                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>, Placed<MovingPlacing<M>, LocalBody<M>, Box>>;
 
 /// Lists the rays that come near the object's bounding ball at all.
 template <class S, class Placing>

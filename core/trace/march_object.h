@@ -131,14 +131,14 @@ struct Marched {
 };
 template <Metric M, bool = HasIsometry<M>>
 struct AnyMarched {
-  using Type = std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Quad>,
-                            Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, Quad>>;
+  using Type = std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Box>,
+                            Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, Box>>;
 };
 template <Metric M>
 struct AnyMarched<M, true> {
   using Type =
-      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Quad>,
-                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, Quad>>;
+      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Box>,
+                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, Box>>;
 };
 
 template <Metric M>

@@ -53,6 +53,7 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
   const double tau = local_time(body, observer, body.first_guess(observer));
   if (!shape.hides(body.local(observer, tau).second)) return nullptr;
   if (described.type == ShapeType::quad) return "holds the observer in its surface";
+  if (described.type == ShapeType::box) return "holds the observer; a box is seen from outside";
   return described.dome ? "is a dome, but the observer stands outside it"
                         : "holds the observer; a sphere that is seen from inside needs \"dome\": true";
 }
@@ -75,11 +76,11 @@ LocalBody<M> local_body(const M& metric, const Vec4<double>& start, const Placin
   return {frame, make_orbit(frame, ball)};
 }
 
-/// Calls f with the shape in its own type.
+/// Calls f with the shape in its own type. A quad is a box without height: one search for both.
 template <class F>
 decltype(auto) with_shape(const Shape& shape, F&& f) {
-  if (shape.type == ShapeType::quad) return f(Quad{0.5 * shape.edges[0], 0.5 * shape.edges[1]});
-  return f(Sphere{shape.radius, shape.dome});
+  if (shape.type == ShapeType::sphere) return f(Sphere{shape.radius, shape.dome});
+  return f(Box{0.5 * shape.edges[0], 0.5 * shape.edges[1], 0.5 * shape.edges[2]});
 }
 
 NULLCONE_KERNEL_END

@@ -88,64 +88,128 @@ struct Sphere {
   }
 };
 
-/// A rectangle in the xy plane, centred, with edges along x and y; its normal is +z. Seen from both sides.
-struct Quad {
-  double half_x, half_y;
+/// A box about the origin with its edges along the axes, seen from outside. Without height it is a rectangle
+/// (a quad) in the xy plane, with the normal +z, and seen from both sides.
+struct Box {
+  double half_x, half_y, half_z = 0;
   static constexpr bool isotropic = false;
 
-  double bounding_radius() const { return sqrt(half_x * half_x + half_y * half_y); }
+  bool flat() const { return half_z == 0; }
+  double bounding_radius() const { return sqrt(half_x * half_x + half_y * half_y + half_z * half_z); }
   bool starts_inside() const { return false; }
 
+  /// The face of whose plane a point is farthest outside: on the surface, the face that it lies on.
+  template <class S>
+  struct Face {
+    Mask<S> on_x, on_z;  ///< neither: a face across y
+    S side;              ///< -1 or 1
+
+    template <class T>
+    T pick(const T& x, const T& y, const T& z) const {
+      return select(on_x, x, select(on_z, z, y));
+    }
+  };
+  template <class S>
+  Face<S> face(const Vec3<S>& X) const {
+    const S x = abs(X[0]) - S(half_x), y = abs(X[1]) - S(half_y), z = abs(X[2]) - S(half_z);
+    Face<S> out;
+    out.on_z = (z >= max(x, y)) | (S(half_z) == S(0.0));
+    out.on_x = (x >= y) & !out.on_z;
+    const auto below = out.pick(X[0], X[1], X[2]) < S(0.0);
+    out.side = select(below & (S(half_z) > S(0.0)), S(-1.0), S(1.0));
+    return out;
+  }
+
+  template <class S>
+  Vec3<S> normal(const Vec3<S>& X) const {
+    const Face<S> at = face(X);
+    const S none(0.0);
+    return {{at.pick(at.side, none, none), at.pick(none, at.side, none), at.pick(none, none, at.side)}};
+  }
+
+  /// The greatest of the distances from the planes of the faces: convex, so that Newton's method ends at the
+  /// face through which a ray comes in, or leaves.
   template <class S>
   S value(const Vec3<S>& X) const {
-    return X[2];
+    const auto at = face(plain(X));
+    return S(at.side) * at.pick(X[0], X[1], X[2]) - at.pick(S(half_x), S(half_y), S(half_z));
   }
 
-  /// Whether an observer at X stands in the rectangle itself.
+  /// Whether an observer at X stands in the box, or in the rectangle itself.
   bool hides(const Vec3<double>& X) const {
     return std::fabs(X[0]) <= half_x && std::fabs(X[1]) <= half_y &&
-           std::fabs(X[2]) <= 1e-12 * (half_x + half_y);
+           std::fabs(X[2]) <= half_z + 1e-12 * (half_x + half_y);
   }
 
-  /// The plane cannot be met before first_root, nor the rectangle before its distance over the greatest
-  /// speed. Within `resolution` (a length of lambda) the rectangle counts as met: rounding may have carried
-  /// the ray across.
+  /// The box cannot be met before the ray has come to the planes of all faces that it is outside of, nor
+  /// before its distance over the greatest speed. Within `resolution` (a length of lambda) it counts as met:
+  /// rounding may have carried the ray across.
   template <class S>
   S safe_step(const Sight<S>& ray, const S& resolution) const {
-    const S out_x = max(abs(ray.X[0]) - S(half_x), S(0.0)), out_y = max(abs(ray.X[1]) - S(half_y), S(0.0));
-    const S distance = sqrt(out_x * out_x + out_y * out_y + ray.X[2] * ray.X[2]);
-    const S slope = select(ray.X[2] < S(0.0), -ray.slope[2], ray.slope[2]);
-    const S by_plane = first_root(abs(ray.X[2]), slope, -ray.bend_max, ray.valid);
-    const S by_distance = distance / ray.slope_max;
-    return select(by_distance <= resolution, S(0.0), max(by_plane, by_distance));
+    const Vec3<S> out = {{outside(ray.X[0], half_x), outside(ray.X[1], half_y), outside(ray.X[2], half_z)}};
+    const auto until = [&](std::size_t i) {
+      const S away = select(ray.X[i] < S(0.0), -ray.slope[i], ray.slope[i]);
+      return select(out[i] > S(0.0), plane_step(out[i], away, ray.bend_max), S(0.0));
+    };
+    S step = until(2);
+    if (!flat()) step = max(step, max(until(0), until(1)));
+    const S by_distance = norm(out) / ray.slope_max;
+    return select(by_distance <= resolution, S(0.0), max(step, by_distance));
   }
 
+  /// The same for rays that may have met it before. Whoever is inside leaves only where the ray is outside of
+  /// a face by more than rounding: who then looks for the box from outside does not find the same face again.
   template <class S>
-  Vec3<S> normal(const Vec3<S>&) const {
-    return {{S(0.0), S(0.0), S(1.0)}};
+  S onward_step(const Sight<S>& ray, const S& resolution, const Mask<S>& inside) const {
+    const S outer = safe_step(ray, resolution);
+    if (flat() || !any(inside)) return outer;
+    const std::array<double, 3> half = {half_x, half_y, half_z};
+    S inner = ray.valid;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const S speed = abs(ray.slope[i]), X = select(ray.slope[i] < S(0.0), -ray.X[i], ray.X[i]);
+      const S room = S(half[i]) + S(4.0) * resolution * ray.slope_max;
+      const S ahead = plane_step(max(room - X, S(0.0)), -speed, ray.bend_max);
+      const S behind = plane_step(max(room + X, S(0.0)), speed, ray.bend_max);
+      inner = min(inner, min(ahead, behind));
+    }
+    return select(inside, inner, outer);
   }
 
-  /// The same for rays that may have met the quad before: those that move away from its plane have first to
-  /// turn round.
-  template <class S>
-  S onward_step(const Sight<S>& ray, const S& resolution, const Mask<S>&) const {
-    const S slope = select(ray.X[2] < S(0.0), -ray.slope[2], ray.slope[2]);
-    const S bend = max(ray.bend_max, S(1e-300)), step = safe_step(ray, resolution);
-    const S turned_back = (slope + sqrt(slope * slope + S(2.0) * bend * abs(ray.X[2]))) / bend;
-    return select((step > S(0.0)) & (slope > S(0.0)), turned_back, step);
-  }
-
-  /// Within `rounding` the plane counts as met; the flatter a ray meets it, the longer it stays so near. The
-  /// factor leaves room for steps whose rounding is larger.
+  /// Within `rounding` a rectangle counts as met; the flatter a ray meets it, the longer it stays so near.
+  /// The factor leaves room for steps whose rounding is larger.
   template <class S>
   S skip(const Sight<S>& ray, const S& rounding) const {
+    if (!flat()) return S(0.0);
     const S steep = max(abs(ray.slope[2]), S(1e-300));
     return min(S(64.0) * rounding * ray.slope_max / steep, S(2 * bounding_radius()) / ray.slope_max);
   }
 
+  /// Of a rectangle u along x, v along y. Of a box an atlas of its faces in three columns, x, y and z: above
+  /// those on the positive side, below the others. In each cell u runs to the right and v upwards as the face
+  /// is seen from outside, with +z up, or +y on the faces across z; never up to the cell's edge.
   template <class S>
   Vec<S, 2> uv(const Vec3<S>& X) const {
-    return {{S(0.5) + S(0.5 / half_x) * X[0], S(0.5) + S(0.5 / half_y) * X[1]}};
+    if (flat()) return {{S(0.5) + S(0.5 / half_x) * X[0], S(0.5) + S(0.5 / half_y) * X[1]}};
+    const auto at = face(plain(X));
+    using P = std::decay_t<decltype(at.side)>;
+    const S x = part(X[0], half_x), y = part(X[1], half_y), z = part(X[2], half_z);
+    const S right = S(at.side) * at.pick(y, S(0.0) - x, x), up = at.pick(z, z, y);
+    const P column = at.pick(P(0.5), P(1.5), P(2.5)), row = P(0.5) + P(0.25) * at.side;
+    return {{S(1.0 / 3) * (S(column) + right), S(row) + S(0.5) * up}};
+  }
+
+ private:
+  template <class S>
+  static S outside(const S& x, double half) {
+    return max(abs(x) - S(half), S(0.0));
+  }
+  /// From -1/2 to 1/2 across a face, and a little less: single precision must not reach its edge.
+  template <class S>
+  static S part(const S& x, double half) {
+    const double most = (1 - 1e-6) * half;
+    const auto at = plain(x);
+    using P = std::decay_t<decltype(at)>;
+    return S(0.5 / half) * select(at < P(-most), S(-most), select(at > P(most), S(most), x));
   }
 };
 

@@ -30,4 +30,14 @@ S first_root(const S& f, const S& slope, const S& c, const S& none) {
   return select(meets, S(2.0) * f / denominator, none);
 }
 
+/// A step that cannot reach a plane at the distance f >= 0, which changes at the rate `slope`, and its rate
+/// by at most `bend` >= 0: the root of f + f' delta - bend delta^2/2, without cancellation. Who moves away
+/// has first to turn round.
+template <class S>
+S plane_step(const S& f, const S& slope, const S& bend) {
+  const S root = sqrt(slope * slope + S(2.0) * bend * f);
+  const auto away = slope > S(0.0);
+  return select(away, slope + root, S(2.0) * f) / max(select(away, bend, root - slope), S(1e-307));
+}
+
 NULLCONE_KERNEL_END
