@@ -1,96 +1,51 @@
-// nullcone-postrender: a dataset and a look in, a picture out.
+// nullcone-postrender: a dataset and a look in, a picture out; or many.
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <string>
-#include <vector>
+#include <filesystem>
 
+#include "apps/postrender_completion.h"
+#include "apps/postrender_explain.h"
+#include "apps/postrender_frame.h"
+#include "apps/postrender_progress.h"
+#include "apps/postrender_sequence.h"
 #include "apps/postrender_show.h"
-#include "apps/tool.h"
-#include "core/record/dataset_file.h"
-#include "postrender/look_source.h"
-#include "postrender/needed_channels.h"
+#include "core/base/error.h"
 #include "postrender/picture_file.h"
-#include "postrender/renderer.h"
-#include "postrender/stack.h"
 
 namespace {
 
 using namespace nullcone;
 
-struct Options : PostrenderOptions {
-  std::vector<std::string> looks, settings;
-  std::string show;  ///< a channel in place of a look
-  std::string range;
-};
-
-void report(const Options& options, const postrender::Image& image, const Seconds& seconds) {
-  if (options.json)
-    std::printf(
-        "{\"width\":%d,\"height\":%d,\"white_cd_m2\":%.9g,"
-        "\"seconds\":{\"read\":%.6f,\"render\":%.6f,\"write\":%.6f}}\n",
-        image.width, image.height, image.white_cd_m2, seconds.read, seconds.render, seconds.write);
-  report_times(options, image.width, image.height, seconds);
-}
-
-/// Steps 1 and 2: the manifest, then the looks against it.
-std::vector<postrender::Look> read_looks(const Options& options, const Manifest& manifest) {
-  std::vector<postrender::Look> looks;
-  for (const std::string& file : options.looks.empty() ? std::vector<std::string>{""} : options.looks)
-    looks.push_back(postrender::read_look(manifest, options.data, file, options.settings));
-  return looks;
-}
-
-/// Step 3: the channels that the looks need, and no others.
-Dataset read_needed(const std::string& path, const Manifest& manifest,
-                    const std::vector<postrender::Look>& looks) {
-  ChannelSet needed;
-  for (const postrender::Look& look : looks) {
-    postrender::check_channels(look, manifest, manifest.channels, path);
-    needed = needed | postrender::needed_channels(look, manifest);
-  }
-  return read_dataset(path, needed, false);
-}
-
-int render(const Options& options) {
-  namespace pr = postrender;
-  Stopwatch watch;
-  Seconds seconds;
-  const Manifest manifest = read_manifest(options.data);
-  const std::vector<pr::Look> looks = read_looks(options, manifest);
-  pr::Renderer renderer(read_needed(options.data, manifest, looks));
-  seconds.read = watch.lap();
-
-  std::vector<pr::Image> pictures;
-  for (const pr::Look& look : looks) pictures.push_back(renderer.render(look));
-  const pr::Image image = pr::stack(pictures);
-  seconds.render = watch.lap();
-
-  pr::write_picture(options.picture, image, options.bits);
-  seconds.write = watch.lap();
-
-  report(options, image, seconds);
-  return 0;
-}
-
-int work(const Options& options) {
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      static_cast<std::size_t>(options.common.threads > 0 ? options.common.threads
-                                                          : tbb::info::default_concurrency()));
+void check_options(const PostrenderOptions& options) {
+  const auto refuse = [](const char* option, const char* why) { throw InputError(option, why); };
+  if (options.picture.empty()) refuse("--output", "is required (see --help)");
   postrender::check_picture_name(options.picture, options.bits);
-  if (!options.show.empty()) return show_channel(options, options.show, options.range);
-  return render(options);
+  if (options.frames.empty() && !options.movie.empty()) refuse("--movie", "expected --frames");
+  if (options.frames.empty() && options.overwrite) refuse("--overwrite", "expected --frames");
+  const std::string folder = std::filesystem::path(options.picture).parent_path().string();
+  if (!folder.empty() && !postrender::has_number(folder) && !std::filesystem::is_directory(folder))
+    refuse("--output", "the folder is not there");
 }
 
-}  // namespace
+int work(const PostrenderOptions& options, const CLI::App& app, bool number_given) {
+  if (!options.completion.empty()) return print_completion(app, options.completion);
+  if (options.data.empty()) throw InputError("DATA", "is required (see --help)");
+  if (!options.complete_set.empty() || app.count("--complete-set") > 0) return complete_set(options);
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(thread_count(options)));
+  const bool sequence = !options.frames.empty();
+  const bool pattern = postrender::FramePatterns{options.data, options.looks, options.picture}.any();
+  if (pattern && !sequence && !number_given)
+    throw InputError("--frames",
+                     "is missing; names with # want numbers, as --frames 0-249, or one --frame 7");
+  if (options.explain) return explain_look(options);
+  check_options(options);
+  if (!options.show.empty()) return show_channel(options);
+  return sequence ? render_sequence(options) : render_picture(options);
+}
 
-int main(int argc, char** argv) {
-  CLI::App app("Makes a picture from a dataset and a look.", "nullcone-postrender");
-  Options options;
-  add_common_options(app, options.common);
-  app.add_option("DATA", options.data, "dataset (.exr)")->required();
+/// What the picture shows.
+void add_look_options(CLI::App& app, PostrenderOptions& options) {
   CLI::Option* look =
       app.add_option("--look", options.looks,
                      "look (.json) in place of the scene's own; several are stacked from top to bottom")
@@ -107,8 +62,44 @@ int main(int argc, char** argv) {
           ->excludes(look)
           ->excludes(set);
   app.add_option("--range", options.range, "a,b: numbers at the ends of the scale of --show")->needs(show);
-  app.add_option("-o,--output", options.picture, "picture: .png, .jpg, .jpeg or .exr")->required();
+  app.add_flag("--explain", options.explain, "print the look in full, as JSON; no picture")->excludes(show);
+  app.add_option("--complete-set", options.complete_set)->group("");
+}
+
+void add_sequence_options(CLI::App& app, PostrenderOptions& options) {
+  CLI::Option* show = app.get_option("--show");
+  CLI::Option* frame =
+      app.add_option("--frame", options.frame, "number of a single picture, for keyframes and ####")
+          ->check(CLI::Range(0, 999'999'999));
+  CLI::Option* frames =
+      app.add_option(
+             "--frames", options.frames,
+             "0-249, 0-249:5 or 3,7,9-12: a sequence; #### in DATA, --look and --output is the number")
+          ->excludes(frame)
+          ->excludes(show)
+          ->excludes(app.get_option("--explain"));
+  app.add_flag("--overwrite", options.overwrite, "also the frames that are there and up to date")
+      ->needs(frames);
+  CLI::Option* movie =
+      app.add_option("--movie", options.movie, "movie of the frames (.mp4, .mkv), by ffmpeg")->needs(frames);
+  app.add_option("--fps", options.fps, "frames a second of the movie (25)")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->needs(movie);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes a picture from a dataset and a look, or a sequence of them.", "nullcone-postrender");
+  PostrenderOptions options;
+  add_common_options(app, options.common);
+  app.add_option("DATA", options.data, "dataset (.exr)");
+  app.add_option("-o,--output", options.picture, "picture: .png, .jpg, .jpeg or .exr");
   app.add_option("--bits", options.bits, "8 or 16 bits a channel (PNG)");
+  add_look_options(app, options);
+  add_sequence_options(app, options);
   app.add_flag("--json", options.json, "report as JSON on standard output");
-  return run_tool(app, argc, argv, [&] { return work(options); });
+  app.add_option("--completion", options.completion,
+                 "bash or zsh: print the script that completes this command line");
+  return run_tool(app, argc, argv, [&] { return work(options, app, app.count("--frame") > 0); });
 }

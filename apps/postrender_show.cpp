@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "apps/postrender_frame.h"
 #include "core/base/error.h"
 #include "core/record/dataset_file.h"
 #include "postrender/channel_values.h"
@@ -26,16 +27,11 @@ void report_scale(const std::string& name, int width, int height, const pr::Colo
 
 }  // namespace
 
-void report_times(const PostrenderOptions& options, int width, int height, const Seconds& seconds) {
-  if (!options.common.quiet)
-    std::fprintf(stderr, "%s: %d x %d, read %.3f s, rendered %.3f s, written %.3f s\n",
-                 options.picture.c_str(), width, height, seconds.read, seconds.render, seconds.write);
-}
-
-int show_channel(const PostrenderOptions& options, const std::string& name, const std::string& range) {
+int show_channel(const PostrenderOptions& options) {
+  const std::string& name = options.show;
   const bool as_numbers = pr::is_exr_name(options.picture);
   std::optional<pr::Range> given;
-  if (!range.empty()) given = pr::parse_range(range);
+  if (!options.range.empty()) given = pr::parse_range(options.range);
   if (given && as_numbers)
     throw InputError("--range", "numbers in an .exr file have no scale; expected .png");
   Stopwatch watch;
@@ -50,7 +46,7 @@ int show_channel(const PostrenderOptions& options, const std::string& name, cons
     pr::write_channel(options.picture, name, manifest, values);
     seconds.write = watch.lap();
     if (options.json) report_scale(name, manifest.width, manifest.lines, nullptr, seconds);
-    report_times(options, manifest.width, manifest.lines, seconds);
+    report_times(options, options.picture, manifest.width, manifest.lines, seconds);
     return 0;
   }
   // Step 2: its colours.
@@ -60,7 +56,7 @@ int show_channel(const PostrenderOptions& options, const std::string& name, cons
   pr::write_picture(options.picture, image, options.bits);
   seconds.write = watch.lap();
   if (options.json) report_scale(name, image.width, image.height, &scale, seconds);
-  report_times(options, image.width, image.height, seconds);
+  report_times(options, options.picture, image.width, image.height, seconds);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/preview.h"
 #include "apps/scene_text.h"
+#include "apps/stop_signals.h"
 #include "apps/tool.h"
 #include "apps/trace_job.h"
 #include "core/base/error.h"
@@ -16,22 +17,6 @@
 namespace {
 
 using namespace nullcone;
-
-/// Set by SIGINT and SIGTERM: tracing then ends after the bands in flight. What is already being written is
-/// finished. A second signal ends the program at once.
-StopFlag stop_wanted = false;
-static_assert(StopFlag::is_always_lock_free);
-
-void stop_when_asked() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_wanted = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  for (const int number : {SIGINT, SIGTERM}) {
-    struct sigaction before {};
-    sigaction(number, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);  // ignored under nohup, say
-  }
-}
 
 /// Rate and time left on standard error, about five times a second.
 class Talk {
@@ -145,6 +130,6 @@ int main(int argc, char** argv) {
   app.add_flag("--resume", options.resume, "Go on where an interrupted run of the same scene stopped");
   add_common_options(app, options.common);
 
-  stop_when_asked();
+  catch_stop_signals();
   return run_tool(app, argc, argv, [&] { return work(options); });
 }

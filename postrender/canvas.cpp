@@ -1,5 +1,7 @@
 #include "postrender/canvas.h"
 
+#include <algorithm>
+
 #include "postrender/bitmap_font.h"
 
 namespace nullcone::postrender {
@@ -12,6 +14,16 @@ void Canvas::set(int x, int y, Rgb color) {
 void Canvas::fill(int left, int top, int w, int h, Rgb color) {
   for (int y = top; y < top + h; ++y)
     for (int x = left; x < left + w; ++x) set(x, y, color);
+}
+
+void Canvas::darken(int left, int top, int w, int h) {
+  const auto darker = [](float x) { return x > 0 ? 0.1f * std::min(x, 1.0f) : 0.0f; };
+  for (int y = std::max(top, 0); y < std::min(top + h, height); ++y)
+    for (int x = std::max(left, 0); x < std::min(left + w, width); ++x) {
+      Rgb& c =
+          pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+      c = {darker(c.r), darker(c.g), darker(c.b)};
+    }
 }
 
 void Canvas::write(int left, int top, std::string_view text, Rgb color, int scale) {

@@ -77,7 +77,7 @@ json at_frame(json document, double frame, const std::string& place, const std::
   }
   if (document.is_object())
     for (auto& [key, value] : document.items())
-      value = at_frame(std::move(value), frame, place, pointer + "/" + key);
+      value = at_frame(std::move(value), frame, place, pointer + "/" + escape_pointer(key));
   if (document.is_array())
     for (std::size_t i = 0; i < document.size(); ++i)
       document[i] = at_frame(std::move(document[i]), frame, place, pointer + "/" + std::to_string(i));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "postrender/canvas.h"
@@ -90,76 +89,13 @@ int draw_entries(Canvas* canvas, const Layout& at, int top, const std::vector<En
   return y + line - top;
 }
 
-int bar_height(const Layout& at) { return 14 * at.scale + text_height(at.scale); }
-
-void draw_bar(Canvas& canvas, const Layout& at, int top, const ColorScale& scale) {
-  const int height = 10 * at.scale, left = at.margin(), wide = at.inner();
-  const auto [from, to] = scale.range;
-  const bool logarithmic = scale.kind != ScaleKind::linear;
-  for (int x = 0; x < wide; ++x) {
-    const double s = (x + 0.5) / wide,
-                 value = logarithmic ? from * std::pow(to / from, s) : from + s * (to - from);
-    canvas.fill(left + x, top, 1, height, scale.color(static_cast<float>(value)));
-  }
-  int free = 0;  // from here on no text stands yet
-  for (const double tick : ticks(scale, std::max(2, at.columns() / 10))) {
-    const int x = left + static_cast<int>(std::lround(scale.place(tick) * (wide - 1)));
-    const std::string text = tick_text(tick);
-    const int width = text_width(text, at.scale),
-              start = std::clamp(x - width / 2, at.scale, std::max(at.scale, at.width - width));
-    canvas.fill(x, top + height, at.scale, 3 * at.scale, kInk);
-    if (start < free) continue;
-    canvas.write(start, top + height + 4 * at.scale, text, kInk, at.scale);
-    free = start + width + 4 * at.scale;
-  }
-}
-
 /// Whether a number has a place along the bar.
 bool stands_on(const ColorScale& scale, float value) {
   if (scale.kind == ScaleKind::categories || !std::isfinite(value)) return false;
   return scale.kind == ScaleKind::linear || value > 0;
 }
 
-double round_step(double rough) {
-  const double power = std::pow(10, std::floor(std::log10(rough)));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * power >= rough * (1 - 1e-9)) return step * power;
-  return 10 * power;
-}
-
 }  // namespace
-
-std::vector<double> ticks(const ColorScale& scale, int most) {
-  const auto [from, to] = scale.range;
-  std::vector<double> out;
-  const bool logarithmic = scale.kind == ScaleKind::logarithmic || scale.kind == ScaleKind::shift;
-  const double decades = logarithmic ? std::log10(to / from) : 0;
-  if (decades >= 0.7) {
-    // Powers of ten; between them 2 and 5 if there is room.
-    const int stride = static_cast<int>(std::ceil((decades + 1) / most));
-    const bool finer = 3 * (decades + 1) <= most;
-    for (int k = static_cast<int>(std::floor(std::log10(from))); k <= std::log10(to); k += 1)
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        const double value = digit * std::pow(10, k);
-        if ((digit == 1 ? k % stride == 0 : finer) && value >= from && value <= to) out.push_back(value);
-      }
-    return out;
-  }
-  const double step = round_step((to - from) / most);
-  for (double k = std::ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; ++k) out.push_back(k * step);
-  return out;
-}
-
-std::string tick_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value == 0 ? 0.0 : value);
-  std::string out = text.data();
-  const std::size_t e = out.find('e');
-  if (e == std::string::npos) return out;
-  std::string power = out.substr(e + 2);
-  power.erase(0, std::min(power.find_first_not_of('0'), power.size() - 1));
-  return out.substr(0, e + 1) + (out[e + 1] == '-' ? "-" : "") + power;
-}
 
 Image false_color_picture(const ColorScale& scale, const ChannelInfo& channel, const Manifest& manifest,
                           std::span<const float> values) {
@@ -172,7 +108,7 @@ Image false_color_picture(const ColorScale& scale, const ChannelInfo& channel, c
   const bool bar = std::ranges::any_of(values, [&](float x) { return stands_on(scale, x); });
   const int titles = static_cast<int>(title.size()) * text_height(at.scale);
   const int legend =
-      2 * at.margin() + titles + (bar ? bar_height(at) : 0) + draw_entries(nullptr, at, 0, entries);
+      2 * at.margin() + titles + (bar ? bar_height(at.scale) : 0) + draw_entries(nullptr, at, 0, entries);
   // Step 2: the picture.
   Canvas canvas(width, manifest.lines + legend, kPaper);
   for (int y = 0; y < manifest.lines; ++y)
@@ -186,8 +122,13 @@ Image false_color_picture(const ColorScale& scale, const ChannelInfo& channel, c
     canvas.write(at.margin(), y, line, kInk, at.scale);
     y += text_height(at.scale);
   }
-  if (bar) draw_bar(canvas, at, y, scale);
-  if (bar) y += bar_height(at);
+  if (bar) {
+    std::vector<Rgb> colors;
+    for (const double value : bar_values(scale, at.inner()))
+      colors.push_back(scale.color(static_cast<float>(value)));
+    draw_bar(canvas, {at.margin(), y, at.inner(), at.scale}, scale, colors, kInk);
+    y += bar_height(at.scale);
+  }
   draw_entries(&canvas, at, y, entries);
   return {canvas.width, canvas.height, 1, canvas.pixels, canvas.pixels, {}};
 }

@@ -2,20 +2,13 @@
 #pragma once
 
 #include <span>
-#include <string>
-#include <vector>
 
 #include "core/record/dataset.h"
+#include "postrender/color_bar.h"
 #include "postrender/false_color.h"
 #include "postrender/image.h"
 
 namespace nullcone::postrender {
-
-/// Numbers at round places of the range, at most `most` of them (at least two), the least first.
-std::vector<double> ticks(const ColorScale& scale, int most);
-
-/// The shortest text of a number that tells it from its neighbours among ticks: "0.25", "1e-9".
-std::string tick_text(double value);
 
 /// The values of a channel (one a pixel of the manifest's window) in the colours of `scale`; below them its
 /// name, unit and meaning, a bar with ticks, or the names of the categories. At least 360 pixels wide.

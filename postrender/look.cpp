@@ -16,15 +16,16 @@ std::map<std::string, ObjectLook> parse_objects(JsonObject in, const LookSource&
     const bool known =
         std::ranges::any_of(manifest.objects, [&](const auto& object) { return object.name == name; });
     if (!known) in.refuse(name, "the dataset has no such object; expected one of " + names);
-    out.emplace(name, parse_object(in.object(name), source));
   }
+  for (const ObjectEntry& object : manifest.objects)
+    out.emplace(object.name, parse_object(in.object_or_empty(object.name), source));
   return out;
 }
 
 PixelFilter parse_pixel_filter(JsonObject in) {
   using Type = PixelFilter::Type;
   PixelFilter filter;
-  const std::string type = in.word("type", {"box", "gaussian", "mitchell"});
+  const std::string type = in.word("type", {"box", "gaussian", "mitchell"}, "box");
   filter.type = type == "box" ? Type::box : type == "gaussian" ? Type::gaussian : Type::mitchell;
   filter.width = in.number_or("width", usual_width(filter.type), 1, kWidestFilter);
   in.finish();
@@ -54,13 +55,14 @@ Effects parse_effects(JsonObject in) {
 }  // namespace
 
 Look parse_look(const nlohmann::json& document, const LookSource& source, const Manifest& manifest) {
-  JsonObject in(document, source.place, source.pointer);
+  JsonObject in(document, source.place, source.pointer, source.survey);
   Look look;
-  if (in.has("objects")) look.objects = parse_objects(in.object("objects"), source, manifest);
-  if (in.has("effects")) look.effects = parse_effects(in.object("effects"));
+  look.objects = parse_objects(in.object_or_empty("objects"), source, manifest);
+  look.effects = parse_effects(in.object_or_empty("effects"));
   look.sensor = parse_sensor(in, "sensor", source);
-  if (in.has("pixel_filter")) look.pixel_filter = parse_pixel_filter(in.object("pixel_filter"));
+  look.pixel_filter = parse_pixel_filter(in.object_or_empty("pixel_filter"));
   look.develop = parse_develop(in);
+  if (in.has("legend")) look.legend = parse_legend(in.object("legend"), source, document, manifest);
   look.background = parse_color_or(in, "background", {});
   in.finish();
   return look;

@@ -8,6 +8,7 @@
 #include "core/record/dataset.h"
 #include "postrender/look_appearance.h"
 #include "postrender/look_develop.h"
+#include "postrender/look_legend.h"
 #include "postrender/pixel_filter.h"
 #include "postrender/spectrum.h"
 
@@ -20,6 +21,7 @@ struct Look {
   PixelFilter pixel_filter;
   DevelopLook develop;
   Rgb background;  ///< linear
+  LegendLook legend;
 };
 
 /// Reads a look for the objects of `manifest`. Throws InputError with the JSON pointer for unknown keys,

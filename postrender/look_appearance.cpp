@@ -110,6 +110,7 @@ AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) 
 ObjectLook parse_object(JsonObject in, const LookSource& source) {
   ObjectLook object;
   object.appearance = parse_appearance(in, source);
+  if (!object.appearance.spectrum) in.note("spectrum", {{"type", "display"}});
   object.opacity = in.number_or("opacity", 1, 0, 1);
   if (in.has("time_slices"))
     for (JsonObject& slice : in.objects("time_slices"))

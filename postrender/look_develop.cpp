@@ -16,6 +16,8 @@ void parse_exposure(JsonObject in, DevelopLook& develop) {
     } else {
       in.refuse("white_cd_m2", "expected a number in cd/m^2, or \"auto\"");
     }
+  } else {
+    in.note("white_cd_m2", "auto");
   }
   develop.ev = in.number_or("ev", 0, -64, 64);
   in.finish();
@@ -33,8 +35,8 @@ void parse_tone(JsonObject in, DevelopLook& develop) {
 
 DevelopLook parse_develop(JsonObject& look) {
   DevelopLook out;
-  if (look.has("exposure")) parse_exposure(look.object("exposure"), out);
-  if (look.has("tone")) parse_tone(look.object("tone"), out);
+  parse_exposure(look.object_or_empty("exposure"), out);
+  parse_tone(look.object_or_empty("tone"), out);
   if (look.word("gamut", {"hue_preserving", "clip"}, "hue_preserving") == "clip")
     out.gamut = DevelopLook::Gamut::clip;
   return out;

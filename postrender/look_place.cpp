@@ -1,6 +1,7 @@
 #include "postrender/look_place.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "postrender/color.h"
 
@@ -9,7 +10,11 @@ namespace nullcone::postrender {
 std::string parse_file(JsonObject& in, std::string_view key, const LookSource& source) {
   const std::string file = in.text(key);
   if (file.empty() || file.find('\0') != std::string::npos) in.refuse(key, "expected the name of a file");
-  return (std::filesystem::path(source.folder) / file).lexically_normal().string();
+  const std::filesystem::path path = (std::filesystem::path(source.folder) / file).lexically_normal();
+  if (source.files != nullptr) source.files->insert(path.string());
+  // A look that is explained may be kept elsewhere.
+  if (source.survey != nullptr) in.note(key, std::filesystem::absolute(path).string());
+  return path.string();
 }
 
 Rgb decoded(const std::vector<double>& srgb) {
@@ -20,7 +25,10 @@ Rgb decoded(const std::vector<double>& srgb) {
 Rgb parse_color(JsonObject& in, std::string_view key) { return decoded(in.numbers(key, 3, 0, 1)); }
 
 Rgb parse_color_or(JsonObject& in, std::string_view key, Rgb fallback) {
-  return in.has(key) ? parse_color(in, key) : fallback;
+  if (in.has(key)) return parse_color(in, key);
+  const auto encoded = [](float linear) { return srgb_encoded(static_cast<double>(linear)); };
+  in.note(key, {encoded(fallback.r), encoded(fallback.g), encoded(fallback.b)});
+  return fallback;
 }
 
 }  // namespace nullcone::postrender

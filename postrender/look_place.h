@@ -1,6 +1,7 @@
 // Where a look stands, and how colours are written in it.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +13,12 @@ namespace nullcone::postrender {
 
 /// A look as JSON and where it came from.
 struct LookSource {
-  std::string place;    ///< a file's name, for complaints
-  std::string pointer;  ///< of the look inside that file: "" or "/look"
-  std::string folder;   ///< relative files are resolved against this
+  std::string place;                       ///< a file's name, for complaints
+  std::string pointer;                     ///< of the look inside that file: "" or "/look"
+  std::string folder;                      ///< relative files are resolved against this
+  double frame = 0;                        ///< of a sequence, for what shows the time
+  JsonSurvey* survey = nullptr;            ///< where asked for: told of all defaults
+  std::set<std::string>* files = nullptr;  ///< where asked for: gets all files that the look names
 };
 
 /// The name of a file under `key`, resolved against the folder of the look.

@@ -1,39 +1,20 @@
 #include "postrender/look_source.h"
 
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "postrender/keyframes.h"
+#include "postrender/look_path.h"
 
 namespace nullcone::postrender {
 
 using nlohmann::json;
 
 namespace {
-
-constexpr std::size_t kDeepestPath = 32;
-
-std::vector<std::string> split_path(const std::string& path, const std::string& place) {
-  const bool pointer = path.find('/') != std::string::npos;
-  std::vector<std::string> keys = {{}};
-  for (std::size_t i = pointer && path[0] == '/' ? 1 : 0; i < path.size(); ++i) {
-    const bool escaped =
-        pointer && path[i] == '~' && i + 1 < path.size() && (path[i + 1] == '0' || path[i + 1] == '1');
-    if (path[i] == (pointer ? '/' : '.')) {
-      keys.emplace_back();
-    } else if (escaped) {
-      keys.back() += path[++i] == '0' ? '~' : '/';
-    } else {
-      keys.back() += path[i];
-    }
-  }
-  for (const std::string& key : keys)
-    if (key.empty()) throw InputError(place, "an empty step in the path; expected path=value");
-  if (keys.size() > kDeepestPath) throw InputError(place, "the path is deeper than 32 steps");
-  return keys;
-}
 
 json parse_value(const std::string& text, const std::string& place) {
   try {
@@ -52,6 +33,17 @@ json& list_entry(json& list, const std::string& key, const std::string& place) {
     throw InputError(place,
                      "no entry '" + printable(key, 40) + "' in a list of " + std::to_string(list.size()));
   return list[index];
+}
+
+/// Whole numbers without a point, so that 1 and 1.0 are told alike.
+json told_alike(json value) {
+  if (value.is_structured())
+    for (json& item : value) item = told_alike(std::move(item));
+  if (!value.is_number_float()) return value;
+  const double number = value.get<double>();
+  const bool whole =
+      number == std::floor(number) && std::abs(number) < 1e15 && !(number == 0 && std::signbit(number));
+  return whole ? json(static_cast<std::int64_t>(number)) : value;
 }
 
 std::string folder_of(const std::string& file) { return std::filesystem::path(file).parent_path().string(); }
@@ -86,8 +78,8 @@ void set_entry(json& look, const std::string& assignment) {
   at->merge_patch(patch);
 }
 
-Look read_look(const Manifest& manifest, const std::string& dataset_file, const std::string& look_file,
-               const std::vector<std::string>& settings) {
+LookDocument read_document(const Manifest& manifest, const std::string& dataset_file,
+                           const std::string& look_file, const std::vector<std::string>& settings) {
   json document = json::object();
   LookSource source{dataset_file, "/look", folder_of(dataset_file)};
   if (!look_file.empty()) {
@@ -98,7 +90,26 @@ Look read_look(const Manifest& manifest, const std::string& dataset_file, const 
     if (scene.is_object() && scene.contains("look")) document = scene["look"];
   }
   for (const std::string& setting : settings) set_entry(document, setting);
-  return parse_look(document, source, manifest);
+  return {std::make_shared<const json>(std::move(document)), source};
+}
+
+Look look_at(const LookDocument& document, const Manifest& manifest, double frame, LookInFull* in_full) {
+  LookSource source = document.source;
+  source.frame = frame;
+  if (in_full != nullptr) {
+    source.survey = &in_full->survey;
+    source.files = &in_full->files;
+  }
+  const json now = at_frame(*document.json, frame, source.place, source.pointer);
+  Look look = parse_look(now, source, manifest);
+  if (in_full != nullptr)
+    in_full->text = canonical_json(told_alike(in_full->survey.complete(now, source.pointer)));
+  return look;
+}
+
+Look read_look(const Manifest& manifest, const std::string& dataset_file, const std::string& look_file,
+               const std::vector<std::string>& settings, double frame) {
+  return look_at(read_document(manifest, dataset_file, look_file, settings), manifest, frame);
 }
 
 }  // namespace nullcone::postrender

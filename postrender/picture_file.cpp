@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "postrender/color.h"
+#include "postrender/picture_stamp.h"
 
 namespace nullcone::postrender {
 
@@ -55,12 +56,20 @@ class PartFile {
   bool done_ = false;
 };
 
-ImageSpec spec_of(const Image& image, const std::string& format, TypeDesc type) {
+/// The same picture is the same file: without this OpenImageIO puts the time of writing into it.
+void finish_exr_spec(ImageSpec& spec) {
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");
+}
+
+ImageSpec spec_of(const Image& image, const std::string& format, TypeDesc type,
+                  const std::string& fingerprint) {
   ImageSpec spec(image.width, image.height, 3, type);
+  if (!fingerprint.empty()) spec.attribute("ImageDescription", fingerprint_comment(fingerprint));
   spec.attribute("oiio:ColorSpace", format == "openexr" ? "Linear" : "sRGB");
   if (format == "jpeg") spec.attribute("Compression", "jpeg:95");
   if (format == "jpeg") spec.attribute("jpeg:subsampling", "4:4:4");
-  if (format == "openexr") spec.attribute("compression", "zip");
+  if (format == "openexr") finish_exr_spec(spec);
   return spec;
 }
 
@@ -81,18 +90,19 @@ void check_picture_name(const std::string& path, int bits) {
   if (bits == 16 && format != "png") throw InputError("--bits", "16 bits need a .png file");
 }
 
-void write_picture(const std::string& path, const Image& image, int bits) {
+void write_picture(const std::string& path, const Image& image, int bits, const std::string& fingerprint) {
   check_picture_name(path, bits);
   const std::string format = format_of(path);
   PartFile part(path);
   if (format == "openexr") {
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::FLOAT), image.exposed.data());
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::FLOAT, fingerprint),
+          image.exposed.data());
   } else if (bits == 16) {
     const auto encoded = encode_srgb16(image.display);
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT16), encoded.data());
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT16, fingerprint), encoded.data());
   } else {
     const auto encoded = encode_srgb8(image.display);
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT8), encoded.data());
+    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT8, fingerprint), encoded.data());
   }
   part.rename();
 }
@@ -107,7 +117,7 @@ void write_channel(const std::string& path, const std::string& channel, const Ma
   spec.full_height = manifest.height;
   spec.channelnames = {channel};
   spec.z_channel = -1;
-  spec.attribute("compression", "zip");
+  finish_exr_spec(spec);
   write(path, part.name(), "openexr", spec, values.data());
   part.rename();
 }

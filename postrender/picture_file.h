@@ -14,9 +14,11 @@ void check_picture_name(const std::string& path, int bits);
 
 /// Writes PNG (8 or 16 bit, sRGB) or JPEG (8 bit, sRGB, quality 95) from `image.display`, or EXR (float,
 /// linear sRGB after exposure, before tone curve and gamut mapping) from `image.exposed`, by the ending of
-/// `path`. The file is written beside its name and renamed when complete; on failure nothing is left behind.
-/// Throws WorkError, and InputError as check_picture_name() does.
-void write_picture(const std::string& path, const Image& image, int bits = 8);
+/// `path`. A fingerprint goes into the file's comment (picture_stamp.h). The file is written beside its name
+/// and renamed when complete; on failure nothing is left behind. Throws WorkError, and InputError as
+/// check_picture_name() does.
+void write_picture(const std::string& path, const Image& image, int bits = 8,
+                   const std::string& fingerprint = {});
 
 /// Whether check_picture_name() takes it for OpenEXR.
 bool is_exr_name(const std::string& path);

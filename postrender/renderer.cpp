@@ -85,12 +85,27 @@ std::vector<ShiftRange> shift_ranges(const Dataset& dataset) {
 
 }  // namespace
 
-Renderer::Renderer(Dataset dataset, const Kernel& kernel)
-    : manifest_(check_records(dataset).manifest),
-      dataset_(by_samples(std::move(dataset))),
-      one_each_(lines_with_one_each(dataset_)),
-      shifts_(shift_ranges(dataset_)),
-      kernel_(kernel) {}
+std::shared_ptr<const Renderer::Source> Renderer::make_source(Dataset dataset) {
+  Manifest manifest = check_records(dataset).manifest;
+  dataset = by_samples(std::move(dataset));
+  std::vector<std::uint8_t> one_each = lines_with_one_each(dataset);
+  std::vector<ShiftRange> shifts = shift_ranges(dataset);
+  return std::make_shared<const Source>(
+      Source{std::move(manifest), std::move(dataset), std::move(one_each), std::move(shifts)});
+}
+
+Renderer::Renderer(Dataset dataset, const Kernel& kernel, std::shared_ptr<TextureCache> textures)
+    : Renderer(make_source(std::move(dataset)), kernel, std::move(textures)) {}
+
+Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
+                   std::shared_ptr<TextureCache> textures)
+    : source_(std::move(source)),
+      manifest_(source_->manifest),
+      dataset_(source_->dataset),
+      one_each_(source_->one_each),
+      shifts_(source_->shifts),
+      kernel_(kernel),
+      textures_(std::move(textures)) {}
 
 std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& own, double opacity,
                                      std::uint32_t id, const Look& look) {
@@ -99,7 +114,7 @@ std::size_t Renderer::add_appearance(Shading& shading, const AppearanceLook& own
   const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
   const TextureLook texture = own.texture.value_or(ColorTexture{plain});
   const ShiftRange shifts = shifts_[id - 1];
-  shading.appearances.push_back({std::visit(TextureMaker{textures_}, texture),
+  shading.appearances.push_back({std::visit(TextureMaker{*textures_}, texture),
                                  lights_.get(spectrum, look.effects, *look.sensor, shifts),
                                  static_cast<float>(opacity)});
   const std::string unknown = unknown_wavelengths(spectrum, look.effects, *look.sensor, shifts);
@@ -229,7 +244,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
     shade_and_develop(shading, look.develop, image);
   }
   if (!same) {
-    textures_.prune();
+    textures_->prune();
     lights_.prune();
   }
   filter_ = look.pixel_filter;

@@ -1,7 +1,9 @@
 // The renderer: a dataset in, a picture for every look out.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 
 #include "core/record/dataset.h"
 #include "postrender/light_tables.h"
@@ -18,12 +20,15 @@ class Renderer {
  public:
   /// Throws InputError when the columns do not fit the manifest (counts, objects' numbers, samples). Only the
   /// channels that the looks need must be there (needed_channels.h).
-  explicit Renderer(Dataset dataset, const Kernel& kernel = *kernels().front());
+  explicit Renderer(Dataset dataset, const Kernel& kernel = *kernels().front(),
+                    std::shared_ptr<TextureCache> textures = std::make_shared<TextureCache>());
+  /// Another renderer of the same dataset, for another thread. They share dataset and textures.
+  Renderer sibling() const { return Renderer(source_, kernel_, textures_); }
 
   /// Of the picture.
-  const Manifest& manifest() const { return manifest_; }
+  const Manifest& manifest() const { return source_->manifest; }
   /// What is shaded: its pixels are the samples of the picture.
-  const Dataset& dataset() const { return dataset_; }
+  const Dataset& dataset() const { return source_->dataset; }
 
   /// Step 1 of a picture: textures read, spectra tabulated. Throws InputError for channels that the look
   /// needs and the dataset lacks, and for textures that cannot be read.
@@ -36,6 +41,17 @@ class Renderer {
   void render(const Look& look, const ImageParts& parts, Image& image);
 
  private:
+  /// What siblings share; it never changes.
+  struct Source {
+    Manifest manifest;
+    Dataset dataset;
+    std::vector<std::uint8_t> one_each;  ///< lines_with_one_each()
+    std::vector<ShiftRange> shifts;      ///< by object
+  };
+  static std::shared_ptr<const Source> make_source(Dataset dataset);
+  Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
+           std::shared_ptr<TextureCache> textures);
+
   std::size_t add_appearance(Shading& shading, const AppearanceLook& own, double opacity, std::uint32_t id,
                              const Look& look);
 
@@ -44,13 +60,14 @@ class Renderer {
   void develop_kept(const DevelopLook& look, Image& image) const;
   void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const;
 
-  Manifest manifest_;
-  Dataset dataset_;
-  std::vector<std::uint8_t> one_each_;  ///< lines_with_one_each()
-  std::vector<ShiftRange> shifts_;      ///< by object
+  std::shared_ptr<const Source> source_;
+  const Manifest& manifest_;
+  const Dataset& dataset_;
+  std::span<const std::uint8_t> one_each_;
+  std::span<const ShiftRange> shifts_;
   const Kernel& kernel_;
   LightTables lights_;
-  TextureCache textures_;
+  std::shared_ptr<TextureCache> textures_;
   std::optional<Shading> shaded_;  ///< of the last picture
   PixelFilter filter_;             ///< of the last picture
   bool kept_ = false;              ///< whether radiance_ shows it

@@ -22,6 +22,7 @@ std::string stamp_of(const std::string& path) {
 
 std::shared_ptr<const Pyramid> TextureCache::get(const std::string& path, const std::string& pointer,
                                                  bool alpha) {
+  const std::lock_guard lock(mutex_);
   const std::string stamp = stamp_of(path);
   if (const auto found = entries_.find({path, alpha});
       found != entries_.end() && found->second.stamp == stamp && !stamp.empty())
@@ -32,6 +33,7 @@ std::shared_ptr<const Pyramid> TextureCache::get(const std::string& path, const 
 }
 
 void TextureCache::prune(std::size_t most_bytes) {
+  const std::lock_guard lock(mutex_);
   std::size_t sum = 0;
   for (const auto& [name, entry] : entries_) sum += entry.image->bytes();
   for (auto entry = entries_.begin(); entry != entries_.end() && sum > most_bytes;) {

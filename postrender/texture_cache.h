@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -11,7 +12,7 @@
 namespace nullcone::postrender {
 
 /// Keeps textures by path (with and without their alpha), and reads a file again when its time or size has
-/// changed.
+/// changed. Any number of threads may use it.
 class TextureCache {
  public:
   /// Throws InputError as read_texture() does.
@@ -25,6 +26,7 @@ class TextureCache {
     std::string stamp;  ///< time and size of the file
     std::shared_ptr<const Pyramid> image;
   };
+  std::mutex mutex_;  ///< held while a texture is read: who waits, mostly waits for the same one
   std::map<std::pair<std::string, bool>, Entry> entries_;
 };
 

@@ -248,7 +248,7 @@ TEST(Samples, auto_white_is_that_of_the_filtered_picture) {
 
 TEST(PixelFilters, that_make_no_sense_are_refused) {
   Manifest manifest;
-  for (const auto& [text, place] : {std::pair{R"({"pixel_filter":{}})", "/pixel_filter/type"},
+  for (const auto& [text, place] : {std::pair{R"({"pixel_filter":{"type":1}})", "/pixel_filter/type"},
                                     {R"({"pixel_filter":{"type":"lanczos"}})", "/pixel_filter/type"},
                                     {R"({"pixel_filter":{"type":"box","width":0.5}})", "/pixel_filter/width"},
                                     {R"({"pixel_filter":{"type":"box","width":33}})", "/pixel_filter/width"},
