@@ -5,116 +5,131 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "postrender/look_changing.h"
+
 namespace nullcone::postrender {
+
+using nlohmann::json;
 
 namespace {
 
-std::array<float, 2> parse_pair(JsonObject& in, std::string_view key, std::array<float, 2> fallback) {
-  const auto pair =
-      in.numbers_or(key, {static_cast<double>(fallback[0]), static_cast<double>(fallback[1])}, -1e4, 1e4);
-  return {static_cast<float>(pair[0]), static_cast<float>(pair[1])};
+constexpr std::size_t kSteps = 64;  ///< between two keyframes of a spectrum
+constexpr double kColdest_K = 1, kHottest_K = 1e9, kBrightest = 1e12;
+
+Clock parse_clock(JsonObject& in, std::string_view key) {
+  return in.word(key, {"t", "tau"}) == "tau" ? Clock::tau : Clock::t;
 }
 
-TextureLook parse_image(JsonObject& in, const LookSource& source) {
-  ImageLook image;
-  image.file = parse_file(in, "file", source);
-  const std::string where = in.where("file");
-  image.pointer = where.substr(std::min(where.size(), source.place.size() + 2));
-  image.uv.offset = parse_pair(in, "offset", {0, 0});
-  image.uv.scale = parse_pair(in, "scale", {1, 1});
-  image.mipmap = in.word("filter", {"mipmap", "bilinear"}, "mipmap") == "mipmap";
-  image.alpha = in.boolean("alpha", false);
-  return image;
-}
-
-/// A list of two colours under `key`.
-std::array<Rgb, 2> parse_two_colors(JsonObject& in, std::string_view key) {
-  const nlohmann::json& list = in.at(key);
-  if (!list.is_array() || list.size() != 2)
-    in.refuse(key, "expected a list of two colours [[r, g, b], [r, g, b]]");
-  std::array<Rgb, 2> out;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::string place = std::string(key) + "/" + std::to_string(i);
-    if (!list[i].is_array() || list[i].size() != 3) in.refuse(place, "expected a list of 3 numbers");
-    std::vector<double> srgb;
-    for (const nlohmann::json& number : list[i]) {
-      if (!number.is_number() || !(number.get<double>() >= 0 && number.get<double>() <= 1))
-        in.refuse(place, "expected 3 numbers from 0 to 1");
-      srgb.push_back(number.get<double>());
-    }
-    out[i] = decoded(srgb);
-  }
+Blink parse_blink(JsonObject in, const LookSource& source) {
+  Blink out;
+  out.clock = parse_clock(in, "channel");
+  out.period = in.positive("period");
+  out.duty = parse_number_or(in, "duty", source, 0.5, {0, 1});
+  out.phase = parse_number_or(in, "phase", source, 0, {-1e9, 1e9});
+  out.fade = in.number_or("fade", 0, 0);
+  out.transparent = in.word("off", {"black", "transparent"}, "black") == "transparent";
+  in.finish();
   return out;
 }
 
-TextureLook parse_checkerboard(JsonObject& in) {
-  CheckerboardTexture board;
-  const auto counts = in.numbers("counts", 2, 1, 100000);
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (counts[i] != std::floor(counts[i]))
-      in.refuse("counts/" + std::to_string(i), "expected a whole number");
-    board.counts[i] = static_cast<float>(counts[i]);
-  }
-  if (in.has("colors") == in.has("gradient")) in.refuse("", "expected either colors or gradient");
-  if (in.has("colors")) {
-    const auto colors = parse_two_colors(in, "colors");
-    board.even = {colors[0], colors[0]};
-    board.odd = {colors[1], colors[1]};
-    return board;
-  }
-  JsonObject gradient = in.object("gradient");
-  board.axis = gradient.word("along", {"u", "v"}) == "u" ? 0 : 1;
-  board.even = {parse_color(gradient, "from"), parse_color(gradient, "to")};
-  const auto dark = static_cast<float>(gradient.number_or("dark", 0.25, 0, 1));
-  board.odd = {dark * board.even[0], dark * board.even[1]};
-  gradient.finish();
-  return board;
+/// Between the keys' extremes, as a factor.
+double middle(const Keyframes& keys) {
+  const auto [least, most] = std::ranges::minmax(keys.values);
+  return std::sqrt(least) * std::sqrt(most);
 }
 
-TextureLook parse_texture(JsonObject in, const LookSource& source) {
-  const std::string type = in.word("type", {"image", "checkerboard", "color"});
-  TextureLook texture;
-  if (type == "image") texture = parse_image(in, source);
-  if (type == "checkerboard") texture = parse_checkerboard(in);
-  if (type == "color") texture = ColorTexture{parse_color(in, "rgb")};
-  in.finish();
-  return texture;
+void parse_spectrum_in_time(JsonObject& outer, const LookSource& source, AppearanceLook& out) {
+  json entry = outer.at("spectrum");
+  const std::string pointer = pointer_of(outer, "spectrum", source);
+  // Step 1: the temperature of a black body is exact for every pixel.
+  if (entry.is_object() && entry.contains("temperature_K") && is_keyframes(entry["temperature_K"]) &&
+      !entry.contains("luminance_cd_m2") && entry.contains("type") && entry["type"] == "black_body") {
+    JsonObject in = outer.object("spectrum");
+    out.spectrum_in_time.temperature_K = parse_number(in, "temperature_K", source, {kColdest_K, kHottest_K});
+    entry["temperature_K"] = out.spectrum_in_time.reference_K =
+        middle(*out.spectrum_in_time.temperature_K->keys);
+  }
+  // Step 2: whatever else changes, node by node.
+  const Nodes nodes = at_nodes(entry, kSteps, {}, source.place, pointer);
+  std::vector<SpectrumLook> spectra;
+  for (const json& value : nodes.values)
+    spectra.push_back(parse_spectrum(JsonObject(value, source.place, pointer), source));
+  out.spectrum = spectra.front();
+  if (spectra.size() == 1) return;
+  out.spectrum_in_time.timeline = nodes.timeline;
+  out.spectrum_in_time.nodes = std::move(spectra);
 }
 
 AppearanceLook parse_appearance(JsonObject& in, const LookSource& source) {
   AppearanceLook out;
-  if (in.has("texture")) out.texture = parse_texture(in.object("texture"), source);
-  if (in.has("spectrum")) out.spectrum = parse_spectrum(in.object("spectrum"), source);
+  if (in.has("texture")) out.texture = parse_texture(in, source);
+  if (in.has("spectrum")) parse_spectrum_in_time(in, source, out);
+  if (in.has("intensity")) out.intensity = parse_number(in, "intensity", source, {0, kBrightest});
+  if (in.has("blink")) out.blink = parse_blink(in.object("blink"), source);
   return out;
 }
 
+/// A duration, or one for coming and one for going.
+void parse_fade(JsonObject& in, Slice& out) {
+  if (!in.has("fade")) return;
+  if (in.at("fade").is_array()) {
+    const std::vector<double> both = in.numbers("fade", 2, 0);
+    out.fade_in = both[0];
+    out.fade_out = both[1];
+  } else {
+    out.fade_in = out.fade_out = in.number("fade", 0);
+  }
+}
+
 TimeSliceLook parse_time_slice(JsonObject in, const LookSource& source) {
-  TimeSliceLook slice;
-  slice.own_clock = in.word("channel", {"t", "tau"}) == "tau";
-  slice.from = in.number_or("from", -std::numeric_limits<double>::infinity());
-  slice.to = in.number_or("to", std::numeric_limits<double>::infinity());
-  if (!(slice.from < slice.to)) in.refuse("to", "expected a number greater than from");
-  slice.appearance = parse_appearance(in, source);
-  if (!slice.appearance.texture && !slice.appearance.spectrum)
-    in.refuse("", "expected a texture or a spectrum");
+  TimeSliceLook out;
+  Slice& when = out.when;
+  when.clock = parse_clock(in, "channel");
+  when.from = in.number_or("from", -std::numeric_limits<double>::infinity());
+  when.to = in.number_or("to", std::numeric_limits<double>::infinity());
+  if (!(when.from < when.to)) in.refuse("to", "expected a number greater than from");
+  parse_fade(in, when);
+  out.appearance = parse_appearance(in, source);
+  if (out.appearance.empty()) in.refuse("", "expected a texture, a spectrum, an intensity or a blink");
   in.finish();
-  return slice;
+  return out;
+}
+
+/// All that hold at once are laid over one another; there is a limit.
+void check_fades(const JsonObject& in, const std::vector<TimeSliceLook>& looks) {
+  std::vector<Slice> slices;
+  for (const TimeSliceLook& look : looks) slices.push_back(look.when);
+  try {
+    SliceTable{slices};
+  } catch (const SliceTable::TooManyFades& many) {
+    in.refuse("time_slices", "more than " + std::to_string(SliceTable::kMostFades) +
+                                 " slices fade into one another after " + json(many.time).dump());
+  }
 }
 
 }  // namespace
 
 AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) {
-  return {own.texture ? own.texture : from.texture, own.spectrum ? own.spectrum : from.spectrum};
+  AppearanceLook out = own;
+  if (!own.texture) out.texture = from.texture;
+  if (!own.spectrum) {
+    out.spectrum = from.spectrum;
+    out.spectrum_in_time = from.spectrum_in_time;
+  }
+  if (!own.intensity) out.intensity = from.intensity;
+  if (!own.blink) out.blink = from.blink;
+  return out;
 }
 
 ObjectLook parse_object(JsonObject in, const LookSource& source) {
   ObjectLook object;
   object.appearance = parse_appearance(in, source);
   if (!object.appearance.spectrum) in.note("spectrum", {{"type", "display"}});
-  object.opacity = in.number_or("opacity", 1, 0, 1);
+  object.opacity = parse_number_or(in, "opacity", source, 1, {0, 1});
   if (in.has("time_slices"))
     for (JsonObject& slice : in.objects("time_slices"))
       object.time_slices.push_back(parse_time_slice(slice, source));
+  check_fades(in, object.time_slices);
   in.finish();
   return object;
 }

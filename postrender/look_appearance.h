@@ -3,40 +3,44 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "postrender/coats.h"
+#include "postrender/emission.h"
 #include "postrender/look_spectrum.h"
-#include "postrender/texture.h"
+#include "postrender/look_texture.h"
 
 namespace nullcone::postrender {
 
-/// An image that is yet to be read.
-struct ImageLook {
-  std::string file;     ///< resolved against the folder of the look
-  std::string pointer;  ///< "/objects/earth/texture/file", for complaints
-  UvTransform uv;
-  bool mipmap = true;
-  bool alpha = false;  ///< the picture's alpha counts
+/// A spectrum whose numbers change with the time of emission: either its temperature does, or it is one of
+/// several after the other.
+struct SpectrumInTime {
+  std::optional<Number> temperature_K;  ///< of a black body
+  double reference_K = 1;               ///< that of the spectrum itself
+  Timeline timeline;
+  std::vector<SpectrumLook> nodes;  ///< empty: the spectrum alone
 };
-using TextureLook = std::variant<ColorTexture, CheckerboardTexture, ImageLook>;
 
 /// What is left out is inherited: by a time slice from its object, by an object from the default look.
 struct AppearanceLook {
   std::optional<TextureLook> texture;
   std::optional<SpectrumLook> spectrum;
+  SpectrumInTime spectrum_in_time;  ///< belongs to `spectrum`
+  std::optional<Number> intensity;
+  std::optional<Blink> blink;
+
+  bool empty() const { return !texture && !spectrum && !intensity && !blink; }
 };
 
 /// Another appearance from `from` (included) to `to` (excluded).
 struct TimeSliceLook {
-  bool own_clock = false;  ///< false: channel t; true: the object's proper time, tau + tau_origin
-  double from = 0, to = 0;
+  Slice when;  ///< without its appearance
   AppearanceLook appearance;
 };
 
 struct ObjectLook {
   AppearanceLook appearance;
-  double opacity = 1;                      ///< times what is recorded; 0 hides the object
+  Number opacity{1};                       ///< times what is recorded; always 0 hides the object
   std::vector<TimeSliceLook> time_slices;  ///< the first that holds wins
 };
 

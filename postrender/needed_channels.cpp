@@ -19,18 +19,63 @@ struct Needs {
   ChannelSet useful;
 };
 
-bool has_footprint(const TextureLook& texture) {
-  if (const auto* image = std::get_if<ImageLook>(&texture)) return image->mipmap;
-  return std::holds_alternative<CheckerboardTexture>(texture);
+struct HasFootprint {
+  bool operator()(const ColorTexture&) const { return false; }
+  bool operator()(const CheckerboardTexture&) const { return true; }
+  bool operator()(const ImageLook& image) const { return image.filter != Filter::bilinear; }
+  bool operator()(const MovingLook& moving) const { return std::visit(*this, moving.frames.front()); }
+};
+
+struct HasColorAlone {
+  template <class T>
+  bool operator()(const T&) const {
+    return std::is_same_v<T, ColorTexture>;
+  }
+  bool operator()(const MovingLook& moving) const { return std::visit(*this, moving.frames.front()); }
+};
+
+/// Channels t and tau of the entry at `pointer`.
+void add_clocks(const Clocks& clocks, const std::string& pointer, const std::string& remedy, Needs& out) {
+  if (clocks.t) out.required.push_back({"t", pointer, remedy});
+  if (clocks.tau) out.required.push_back({"tau", pointer, remedy});
+}
+
+Clocks clocks_of(const TextureLook& texture) {
+  Clocks out;
+  const auto* moving = std::get_if<MovingLook>(&texture);
+  if (moving == nullptr) return out;
+  if (moving->placement) out.add(moving->placement->clocks());
+  if (moving->frames.size() > 1) out.add(moving->timeline.clock);
+  return out;
+}
+
+Clocks clocks_of(const SpectrumInTime& spectrum) {
+  Clocks out;
+  if (spectrum.temperature_K) out.add(*spectrum.temperature_K);
+  if (!spectrum.nodes.empty()) out.add(spectrum.timeline.clock);
+  return out;
+}
+
+/// What one appearance itself says of the time of emission; what is inherited its owner has said.
+void add_times(const AppearanceLook& own, const std::string& pointer, Needs& out) {
+  constexpr const char* kKeys = "use numbers without keyframes by the time of emission";
+  if (own.texture) add_clocks(clocks_of(*own.texture), pointer + "/texture", kKeys, out);
+  add_clocks(clocks_of(own.spectrum_in_time), pointer + "/spectrum", kKeys, out);
+  Emission emission;
+  emission.intensity = own.intensity.value_or(Number{1});
+  add_clocks(emission.clocks(), pointer + "/intensity", kKeys, out);
+  emission = {};
+  emission.blink = own.blink;
+  add_clocks(emission.clocks(), pointer + "/blink", "leave it out", out);
 }
 
 /// What one appearance asks for; `pointer` is its entry in the look.
 void add_needs(const AppearanceLook& appearance, const std::string& pointer, const Effects& effects,
                const Manifest& manifest, Needs& out) {
   const TextureLook texture = appearance.texture.value_or(ColorTexture{});
-  if (!std::holds_alternative<ColorTexture>(texture))
+  if (!std::visit(HasColorAlone{}, texture))
     out.required.push_back({"uv", pointer + "/texture", "use a texture of type color"});
-  if (has_footprint(texture))
+  if (std::visit(HasFootprint{}, texture))
     out.useful = out.useful | ChannelSet::of(manifest.channels.has("duv") ? "duv" : "order");
   using Kind = SpectrumLook::Kind;
   const Kind kind = appearance.spectrum ? appearance.spectrum->kind : Kind::display;
@@ -48,13 +93,20 @@ Needs needs_of(const Look& look, const Manifest& manifest) {
   for (const ObjectEntry& entry : manifest.objects) {
     const auto found = look.objects.find(entry.name);
     const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
-    if (object.opacity == 0) continue;
+    if (object.opacity.always(0)) continue;
     const std::string pointer = "/objects/" + entry.name;
+    Clocks opacity;
+    opacity.add(object.opacity);
+    add_clocks(opacity, pointer + "/opacity", "use a number without keyframes", out);
+    add_times(object.appearance, pointer, out);
     add_needs(object.appearance, pointer, look.effects, manifest, out);
     for (std::size_t i = 0; i < object.time_slices.size(); ++i) {
       const TimeSliceLook& slice = object.time_slices[i];
       const std::string place = pointer + "/time_slices/" + std::to_string(i);
-      out.required.push_back({slice.own_clock ? "tau" : "t", place, "leave the time slice out"});
+      Clocks clocks;
+      clocks.add(slice.when.clock);
+      add_clocks(clocks, place, "leave the time slice out", out);
+      add_times(slice.appearance, place, out);
       add_needs(inherited(slice.appearance, object.appearance), slice.appearance.texture ? place : pointer,
                 look.effects, manifest, out);
     }

@@ -13,6 +13,8 @@
 
 namespace nullcone::postrender {
 
+class TextureMaker;
+
 /// Holds a dataset and what depends on unchanged parts of the look: textures, and the shaded radiance when
 /// only exposure, tone curve or gamut mapping change. One thread at a time may call it; inside it works on
 /// all of them, and the pictures do not depend on how many there are.
@@ -52,8 +54,8 @@ class Renderer {
   Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
            std::shared_ptr<TextureCache> textures);
 
-  std::size_t add_appearance(Shading& shading, const AppearanceLook& own, double opacity, std::uint32_t id,
-                             const Look& look);
+  std::size_t add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
+                             const Number& opacity, std::uint32_t id, const Look& look);
 
   void keep_radiance(const Shading& shading);
   void keep_filtered(const Shading& shading, const PixelFilter& filter);

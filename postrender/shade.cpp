@@ -8,29 +8,6 @@ namespace nullcone::postrender {
 
 namespace {
 
-std::size_t appearance_at(const ObjectShading& object, const Hits& hits, std::size_t hit) {
-  for (const Slice& slice : object.slices) {
-    const double time = slice.own_clock ? static_cast<double>(hits.tau[hit]) + object.tau_origin
-                                        : static_cast<double>(hits.t[hit]);
-    if (time >= slice.from && time < slice.to) return slice.appearance;
-  }
-  return object.appearance;
-}
-
-struct TextureColors {
-  const Kernel& kernel;
-  const Run& run;
-  Rgbx* out;
-  void operator()(const ColorTexture& texture) const { std::fill_n(out, run.count, Rgbx{texture.color}); }
-  void operator()(const CheckerboardTexture& texture) const { kernel.checkerboard(texture, run, out); }
-  void operator()(const ImageTexture& texture) const {
-    const Pyramid& image = *texture.image;
-    kernel.image({image.levels.data(), static_cast<float>(image.levels.size() - 1), image.texels.data(),
-                  image.unit, texture.uv, texture.mipmap},
-                 run, out);
-  }
-};
-
 void add_light(const Kernel& kernel, const Light& light, const Lit& lit) {
   if (!light.table) return kernel.plain(lit);
   const TableView table = light.table->view();
@@ -55,18 +32,18 @@ std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t first)
   return last;
 }
 
-bool needs_footprint(const Texture& texture) {
-  if (const auto* image = std::get_if<ImageTexture>(&texture)) return image->mipmap;
-  return std::holds_alternative<CheckerboardTexture>(texture);
+bool has_own_weight(const Appearance& appearance) {
+  return appearance.opacity != 1 || appearance.changes || has_alpha(appearance.texture);
 }
 
-bool has_alpha(const Texture& texture) {
-  const auto* image = std::get_if<ImageTexture>(&texture);
-  return image != nullptr && image->alpha;
-}
-
-bool lets_light_through(const Appearance& appearance) {
-  return appearance.opacity != 1 || has_alpha(appearance.texture);
+Clocks clocks_of(const Shading& shading) {
+  Clocks out;
+  for (const Appearance& appearance : shading.appearances) {
+    out.add(clocks_of(appearance.texture));
+    if (appearance.changes) out.add(appearance.emission.clocks());
+  }
+  for (const ObjectShading& object : shading.objects) out.add(object.clocks());
+  return out;
 }
 
 }  // namespace
@@ -83,13 +60,16 @@ LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one
       shading_(shading),
       kernel_(kernel),
       layers_(dataset, one_each),
-      see_through_(std::ranges::any_of(shading.appearances, lets_light_through)),
+      layered_(std::ranges::any_of(shading.appearances, has_own_weight) ||
+               std::ranges::any_of(shading.objects, &ObjectShading::blends)),
+      clocks_(clocks_of(shading)),
       width_(static_cast<std::size_t>(dataset.manifest.width)),
-      appearance_(width_),
       transmittance_(width_),
-      weight_(width_),
-      opacity_(see_through_ ? width_ : 0),
-      clear_colors_(see_through_ ? width_ : 0) {}
+      opacity_(layered_ ? width_ : 0),
+      parts_(layered_ ? width_ : 0),
+      times_(clocks_.any() ? width_ : 0) {
+  pass_at(0);
+}
 
 bool LineShader::anything_seen(std::size_t row, std::size_t rank) {
   if (one_each_[row] != 0) return rank == 0;
@@ -100,45 +80,122 @@ bool LineShader::anything_seen(std::size_t row, std::size_t rank) {
   return any;
 }
 
+/// The pass of this number, in which no pixel shows anything if it is a new one of this rank.
+LineShader::Pass& LineShader::pass_at(std::size_t number) {
+  if (number >= passes_.size()) {
+    const std::size_t more = layered_ ? width_ : 0;
+    passes_.push_back({std::vector<std::uint32_t>(width_), std::vector<float>(width_),
+                       std::vector<float>(more), std::vector<Rgbx>(more)});
+  }
+  if (number >= used_) {
+    std::ranges::fill(passes_[number].appearance, kUnseen);
+    used_ = number + 1;
+  }
+  return passes_[number];
+}
+
+/// When the crossings of one rank emitted their light.
+void LineShader::find_times(std::size_t row, std::size_t rank, const Layer& here) {
+  const std::uint64_t* offset = dataset_.hits.offset.data() + row * width_;
+  const Hits& hits = dataset_.hits;
+  for (std::size_t i = 0; i < width_; ++i) {
+    if (here.id[i] == 0) continue;
+    const std::size_t hit = offset[i] + rank;
+    if (clocks_.t) times_[i].t = static_cast<double>(hits.t[hit]);
+    if (clocks_.tau)
+      times_[i].tau = static_cast<double>(hits.tau[hit]) + shading_.objects[here.id[i] - 1].tau_origin;
+  }
+}
+
+std::span<const Times> LineShader::times_of(std::size_t first, std::size_t count) const {
+  return clocks_.any() ? std::span(times_).subspan(first, count) : std::span<const Times>();
+}
+
+/// Of pixels [first, last), which see one object.
+void LineShader::find_coats_of(const ObjectShading& object, std::size_t first, std::size_t last) {
+  Coats coats;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::size_t count = find_coats(object, clocks_.any() ? times_[i] : Times{}, coats);
+    for (std::size_t k = 0; k < count; ++k) {
+      Pass& pass = pass_at(k);
+      pass.appearance[i] = coats[k].appearance;
+      if (layered_) pass.part[i] = coats[k].share;
+    }
+  }
+}
+
 /// How the crossings of one rank look, object by object along the line. False if nothing shines through.
 bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer& here) {
-  const std::uint64_t* offset = dataset_.hits.offset.data() + row * width_;
+  if (clocks_.any()) find_times(row, rank, here);
+  used_ = 1;
+  std::vector<std::uint32_t>& appearances = passes_[0].appearance;
+  if (layered_) std::ranges::fill(passes_[0].part, 1.0f);
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
     const std::uint32_t id = here.id[first];
     last = end_of_run({here.id, width_}, first);
     const ObjectShading* object = id == 0 ? nullptr : &shading_.objects[id - 1];
     const bool seen = object != nullptr && shading_.appearances[object->appearance].opacity > 0;
     const std::size_t usual = seen ? object->appearance : kUnseen;
-    std::fill(appearance_.begin() + static_cast<std::ptrdiff_t>(first),
-              appearance_.begin() + static_cast<std::ptrdiff_t>(last), static_cast<std::uint32_t>(usual));
-    if (!seen || object->slices.empty()) continue;
-    for (std::size_t i = first; i < last; ++i)
-      appearance_[i] = static_cast<std::uint32_t>(appearance_at(*object, dataset_.hits, offset[i] + rank));
+    std::fill(appearances.begin() + static_cast<std::ptrdiff_t>(first),
+              appearances.begin() + static_cast<std::ptrdiff_t>(last), static_cast<std::uint32_t>(usual));
+    if (seen && !object->plain()) find_coats_of(*object, first, last);
   }
-  if (see_through_) find_opacities(row, rank, here);
-  return kernel_.weigh(see_through_ ? opacity_.data() : here.opacity, width_, transmittance_.data(),
-                       weight_.data(), appearance_.data());
+  Pass& pass = passes_[0];
+  if (layered_) find_opacities(row, rank, here);
+  const bool through = kernel_.weigh(layered_ ? opacity_.data() : here.opacity, width_, transmittance_.data(),
+                                     pass.weight.data(), pass.appearance.data());
+  if (layered_) share_weights();
+  return through;
 }
 
-/// Opacities of one rank: as recorded, times the object's, times the texture's alpha. Where there is alpha,
-/// colours are looked up here, and kept.
+/// Opacities of one rank: as recorded, times what all coats together have.
 void LineShader::find_opacities(std::size_t row, std::size_t rank, const Layer& here) {
-  std::copy_n(here.opacity, width_, opacity_.begin());
+  std::ranges::fill(parts_, 0.0f);
+  for (std::size_t k = 0; k < used_; ++k) find_parts(passes_[k], row, rank, here);
+  for (std::size_t i = 0; i < width_; ++i) opacity_[i] = here.opacity[i] * parts_[i];
+}
+
+/// Shares turn into parts: times the object's opacity, at its time, times the texture's alpha.
+void LineShader::find_parts(Pass& pass, std::size_t row, std::size_t rank, const Layer& here) {
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
-    last = end_of_run(appearance_, first);
-    if (appearance_[first] == kUnseen) continue;
-    const Appearance& appearance = shading_.appearances[appearance_[first]];
-    for (std::size_t i = first; i < last; ++i) opacity_[i] *= appearance.opacity;
-    if (!has_alpha(appearance.texture)) continue;
-    const std::array<Layer, 3> lines = layers_.around(row, rank, here);
-    for (std::size_t from = first; from < last; from += kSegment)
-      look_up(lines, appearance, from, std::min(kSegment, last - from), &clear_colors_[from]);
-    for (std::size_t i = first; i < last; ++i) {
-      Rgbx& color = clear_colors_[i];
-      const float alpha = color.idle;
-      opacity_[i] *= alpha;
-      // Back to the colour of what is there: the weight brings the opacity in again.
-      color = alpha > 0 ? Rgbx{color.r / alpha, color.g / alpha, color.b / alpha} : Rgbx{};
+    last = end_of_run(pass.appearance, first);
+    if (pass.appearance[first] == kUnseen) continue;
+    const Appearance& appearance = shading_.appearances[pass.appearance[first]];
+    for (std::size_t i = first; i < last; ++i) pass.part[i] *= appearance.opacity;
+    if (appearance.changes)
+      for (std::size_t i = first; i < last; ++i)
+        pass.part[i] *= static_cast<float>(appearance.emission.opacity_at(time_at(i)));
+    if (has_alpha(appearance.texture)) find_alpha(pass, layers_.around(row, rank, here), first, last);
+    for (std::size_t i = first; i < last; ++i) parts_[i] += pass.part[i];
+  }
+}
+
+/// Where there is alpha, colours are looked up before opacities are known, and kept.
+void LineShader::find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::size_t first,
+                            std::size_t last) {
+  const Appearance& appearance = shading_.appearances[pass.appearance[first]];
+  for (std::size_t from = first; from < last; from += kSegment)
+    look_up(lines, appearance, from, std::min(kSegment, last - from), &pass.clear[from]);
+  for (std::size_t i = first; i < last; ++i) {
+    Rgbx& color = pass.clear[i];
+    const float alpha = color.idle;
+    pass.part[i] *= alpha;
+    // Back to the colour of what is there: the weight brings the opacity in again.
+    color = alpha > 0 ? Rgbx{color.r / alpha, color.g / alpha, color.b / alpha} : Rgbx{};
+  }
+}
+
+/// Every coat gets its part of the weight of its pixel, times how bright it is at its time.
+void LineShader::share_weights() {
+  for (std::size_t k = used_; k-- > 0;) {  // the first one last: it holds the whole weights
+    Pass& pass = passes_[k];
+    for (std::size_t i = 0; i < width_; ++i) {
+      if (passes_[0].appearance[i] == kUnseen) pass.appearance[i] = kUnseen;
+      if (pass.appearance[i] == kUnseen) continue;
+      const float part = parts_[i] > 0 ? pass.part[i] / parts_[i] : 0.0f;
+      const Appearance& appearance = shading_.appearances[pass.appearance[i]];
+      const double intensity = appearance.changes ? appearance.emission.intensity_at(time_at(i)) : 1;
+      pass.weight[i] = passes_[0].weight[i] * (part * static_cast<float>(intensity));
     }
   }
 }
@@ -156,36 +213,48 @@ void LineShader::look_up(const std::array<Layer, 3>& lines, const Appearance& ap
       kernel_.footprints(lines, width_, first, count, steps);
     }
   }
-  const Run run = {count, here.u + first, here.v + first, here.shift + first, weight_.data() + first, steps};
-  std::visit(TextureColors{kernel_, run, out}, appearance.texture);
+  const Run run = {count, here.u + first, here.v + first, nullptr, nullptr, steps};
+  postrender::look_up(kernel_, appearance.texture, run, times_of(first, count), layers_.recorded_steps(),
+                      out);
 }
 
-void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance,
-                               std::size_t first, std::size_t count, Rgbx* display, Rgbx* physical) {
+void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
+                               std::size_t count, Rgbx* display, Rgbx* physical) {
   const Layer& here = lines[1];
+  const Appearance& appearance = shading_.appearances[pass.appearance[first]];
   const bool known = has_alpha(appearance.texture);
   if (!known) look_up(lines, appearance, first, count, colors_.data());
-  Rgbx* sum = appearance.light.physical ? physical : display;
-  add_light(kernel_, appearance.light,
-            {count, here.shift + first, weight_.data() + first,
-             known ? &clear_colors_[first] : colors_.data(), sum + first});
+  Lit lit = {count, here.shift + first, pass.weight.data() + first,
+             known ? &pass.clear[first] : colors_.data(),
+             (appearance.light.physical ? physical : display) + first};
+  if (appearance.changes && appearance.emission.temperature) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const SeenReference seen =
+          seen_reference(*appearance.emission.temperature, time_at(first + i), lit.g[i]);
+      shift_[i] = seen.shift;
+      constexpr double kBrightest = 1e30;  // beyond, 0 times infinity would be no number
+      light_[i] = static_cast<float>(std::min(static_cast<double>(lit.weight[i]) * seen.factor, kBrightest));
+    }
+    lit.g = shift_.data();
+    lit.weight = light_.data();
+  }
+  add_light(kernel_, appearance.light, lit);
 }
 
-/// The crossings of one rank. Lines above and below are looked at for footprints only.
-void LineShader::shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display,
-                            Rgbx* physical) {
+/// One coat of the crossings of one rank. Lines above and below are looked at for footprints only.
+void LineShader::shade_pass(const Pass& pass, std::size_t row, std::size_t rank, const Layer& here,
+                            Rgbx* display, Rgbx* physical) {
   std::array<Layer, 3> lines = {here, here, here};
   bool ready = false;
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
-    last = end_of_run(appearance_, first);
-    if (appearance_[first] == kUnseen) continue;
-    const Appearance& appearance = shading_.appearances[appearance_[first]];
-    if (!ready && needs_footprint(appearance.texture)) {
+    last = end_of_run(pass.appearance, first);
+    if (pass.appearance[first] == kUnseen) continue;
+    if (!ready && needs_footprint(shading_.appearances[pass.appearance[first]].texture)) {
       lines = layers_.around(row, rank, here);
       ready = true;
     }
     for (std::size_t from = first; from < last; from += kSegment)
-      shade_segment(lines, appearance, from, std::min(kSegment, last - from), display, physical);
+      shade_segment(lines, pass, from, std::min(kSegment, last - from), display, physical);
   }
 }
 
@@ -197,7 +266,7 @@ void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical) {
   for (std::size_t rank = 0; shines_through && anything_seen(row, rank); ++rank) {
     const Layer here = layers_.at(static_cast<std::ptrdiff_t>(row), rank);
     shines_through = find_appearances(row, rank, here);
-    shade_rank(row, rank, here, display, physical);
+    for (std::size_t k = 0; k < used_; ++k) shade_pass(passes_[k], row, rank, here, display, physical);
   }
   if (shines_through) kernel_.background(transmittance_.data(), shading_.background, width_, display);
 }

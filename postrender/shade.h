@@ -3,42 +3,31 @@
 
 #include <array>
 #include <cstddef>
+#include <deque>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "core/record/dataset.h"
+#include "postrender/coats.h"
+#include "postrender/emission.h"
 #include "postrender/kernel.h"
 #include "postrender/layers.h"
+#include "postrender/moving_texture.h"
 #include "postrender/spectrum.h"
-#include "postrender/texture.h"
 
 namespace nullcone::postrender {
-
-using Texture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture>;
 
 /// How a surface looks, ready for pixels.
 struct Appearance {
   Texture texture;
   Light light;
-  float opacity = 1;  ///< times that of the crossing; 0: not seen at all
+  float opacity = 1;       ///< times that of the crossing; 0: not seen at all
+  Emission emission = {};  ///< what else changes with the time of emission; the opacity there counts too
+  bool changes = false;    ///< whether `emission` says anything
+
   bool operator==(const Appearance&) const = default;
-};
-
-/// From `from` (included) to `to` (excluded) an object has another appearance.
-struct Slice {
-  bool own_clock;  ///< false: channel t; true: tau + tau_origin
-  double from, to;
-  std::size_t appearance;
-  bool operator==(const Slice&) const = default;
-};
-
-struct ObjectShading {
-  double tau_origin;
-  std::size_t appearance;
-  std::vector<Slice> slices;  ///< the first that holds wins
-  bool operator==(const ObjectShading&) const = default;
 };
 
 /// A look with everything that a pixel needs at hand: textures read, spectra tabulated, names turned into
@@ -55,8 +44,9 @@ struct Shading {
 bool has_physical(const Shading& shading);
 
 /// Shades scan lines; holds the working memory of one thread. Crossings are composited front to back,
-/// L += transmittance * A * colour, until nothing shines through: one rank after the other, and in it one run
-/// of pixels of the same appearance after the other.
+/// L += transmittance * A * colour, until nothing shines through: one rank after the other, in it one coat
+/// after the other (coats.h; mostly there is one), and in it one run of pixels of the same appearance after
+/// the other.
 class LineShader {
  public:
   /// `one_each` as lines_with_one_each() finds it.
@@ -67,27 +57,48 @@ class LineShader {
   void shade(std::size_t row, Rgbx* display, Rgbx* physical);
 
  private:
+  /// One of the appearances that each pixel of a rank shows.
+  struct Pass {
+    std::vector<std::uint32_t> appearance;
+    std::vector<float> weight;
+    std::vector<float> part;  ///< its share times its opacity; only where layered_
+    std::vector<Rgbx> clear;  ///< colours of what has alpha; only where layered_
+  };
+
   bool anything_seen(std::size_t row, std::size_t rank);
+  void find_times(std::size_t row, std::size_t rank, const Layer& here);
+  void find_coats_of(const ObjectShading& object, std::size_t first, std::size_t last);
   bool find_appearances(std::size_t row, std::size_t rank, const Layer& here);
   void find_opacities(std::size_t row, std::size_t rank, const Layer& here);
+  void find_parts(Pass& pass, std::size_t row, std::size_t rank, const Layer& here);
+  void find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::size_t first, std::size_t last);
+  void share_weights();
+  Pass& pass_at(std::size_t number);
   void look_up(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
                std::size_t count, Rgbx* out);
-  void shade_segment(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+  void shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
                      std::size_t count, Rgbx* display, Rgbx* physical);
-  void shade_rank(std::size_t row, std::size_t rank, const Layer& here, Rgbx* display, Rgbx* physical);
+  void shade_pass(const Pass& pass, std::size_t row, std::size_t rank, const Layer& here, Rgbx* display,
+                  Rgbx* physical);
+  std::span<const Times> times_of(std::size_t first, std::size_t count) const;
+  Times time_at(std::size_t i) const { return clocks_.any() ? times_[i] : Times{}; }
 
   const Dataset& dataset_;
   std::span<const std::uint8_t> one_each_;
   const Shading& shading_;
   const Kernel& kernel_;
   Layers layers_;
-  bool see_through_;  ///< some appearance lets light through by itself
+  bool layered_;  ///< weights are more than transmittance times recorded opacity
+  Clocks clocks_;
   std::size_t width_;
-  std::vector<std::uint32_t> appearance_;
-  std::vector<float> transmittance_, weight_;
-  std::vector<float> opacity_;      ///< of a rank; only where see_through_
-  std::vector<Rgbx> clear_colors_;  ///< of a rank, what has alpha; only where see_through_
+  std::vector<float> transmittance_;
+  std::vector<float> opacity_;  ///< of a rank; only where layered_
+  std::vector<float> parts_;    ///< sums of Pass::part; only where layered_
+  std::vector<Times> times_;    ///< of a rank; only where clocks_ has any
+  std::deque<Pass> passes_;     ///< the first for every pixel that is seen, the others where they are needed
+  std::size_t used_ = 1;        ///< passes of this rank
   std::array<std::array<float, kSegment>, 4> footprints_;
+  std::array<float, kSegment> shift_, light_;  ///< where the temperature changes
   std::array<Rgbx, kSegment> colors_;
 };
 

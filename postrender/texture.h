@@ -78,10 +78,16 @@ struct CheckerboardTexture {
   bool operator==(const CheckerboardTexture&) const = default;
 };
 
+enum class Filter {
+  bilinear,    ///< in the full image
+  mipmap,      ///< trilinear, over the footprint's longer side
+  anisotropic  ///< over the ellipse that the footprint is
+};
+
 struct ImageTexture {
   std::shared_ptr<const Pyramid> image;
   UvTransform uv;
-  bool mipmap = true;  ///< trilinear over the footprint's longer side; else bilinear in the full image
+  Filter filter = Filter::mipmap;
   bool alpha = false;  ///< the image has alpha, which lets light through
   bool operator==(const ImageTexture&) const = default;
 };
