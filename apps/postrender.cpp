@@ -94,8 +94,8 @@ int main(int argc, char** argv) {
   PostrenderOptions options;
   add_common_options(app, options.common);
   app.add_option("DATA", options.data, "dataset (.exr)");
-  app.add_option("-o,--output", options.picture, "picture: .png, .jpg, .jpeg or .exr");
-  app.add_option("--bits", options.bits, "8 or 16 bits a channel (PNG)");
+  app.add_option("-o,--output", options.picture, "picture: .png, .jpg, .jpeg, .tif, .tiff or .exr");
+  app.add_option("--bits", options.bits, "bits a component: .png 8 or 16, .tif 8, 16 or 32, .exr 16 or 32");
   add_look_options(app, options);
   add_sequence_options(app, options);
   app.add_flag("--json", options.json, "report as JSON on standard output");

@@ -32,7 +32,7 @@ std::vector<Value> values() {
           {"--look", "json"},
           {"--output", ""},
           {"--movie", "mp4"},
-          {"--bits", "words", "8 16"},
+          {"--bits", "words", "8 16 32"},
           {"--show", "words", channel_words()},
           {"--completion", "words", "bash zsh"}};
 }

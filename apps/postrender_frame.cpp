@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "postrender/color.h"
 #include "postrender/inset.h"
 #include "postrender/needed_channels.h"
 #include "postrender/picture_file.h"
@@ -45,7 +46,7 @@ void read_textures_ahead(const std::vector<pr::Look>& looks, pr::TextureCache& t
   try {
     for (const pr::Look& look : looks)
       for (const auto& [name, object] : look.objects) {
-        if (object.opacity == 0) continue;
+        if (object.opacity == pr::Number{0}) continue;
         read(object.appearance);
         for (const pr::TimeSliceLook& slice : object.time_slices) read(slice.appearance);
       }
@@ -54,20 +55,29 @@ void read_textures_ahead(const std::vector<pr::Look>& looks, pr::TextureCache& t
   }
 }
 
-PictureMaker::PictureMaker(const std::string& picture)
-    : parts_{pr::is_exr_name(picture), !pr::is_exr_name(picture), false} {}
+void check_outputs(const std::string& picture, int bits, const std::vector<pr::Look>& looks) {
+  for (const pr::Look& look : looks) pr::check_output(picture, bits, look.develop.output);
+}
+
+PictureMaker::PictureMaker(const std::string& picture, int bits) : parts_(pr::parts_in(picture, bits)) {}
+
+void PictureMaker::render(pr::Renderer& renderer, const pr::Look& look, pr::Image& image) const {
+  // Legends are drawn in linear colours.
+  const bool drawn_on = !look.legend.empty() && parts_.encoded;
+  renderer.render(look, drawn_on ? pr::ImageParts{.exposed = false} : parts_, image);
+  pr::draw_inset(look, renderer.manifest(), image);
+  if (!drawn_on) return;
+  image.encoded = pr::encode_srgb8(image.display);
+  image.display.clear();
+}
 
 const pr::Image& PictureMaker::make(pr::Renderer& renderer, const std::vector<pr::Look>& looks) {
   if (looks.size() == 1) {
-    renderer.render(looks[0], parts_, image_);
-    pr::draw_inset(looks[0], renderer.manifest(), image_);
+    render(renderer, looks[0], image_);
     return image_;
   }
   std::vector<pr::Image> pictures(looks.size());
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    renderer.render(looks[i], parts_, pictures[i]);
-    pr::draw_inset(looks[i], renderer.manifest(), pictures[i]);
-  }
+  for (std::size_t i = 0; i < looks.size(); ++i) render(renderer, looks[i], pictures[i]);
   image_ = pr::stack(pictures);
   return image_;
 }
@@ -88,6 +98,7 @@ int render_picture(const PostrenderOptions& options) {
   const Manifest manifest = read_manifest(files.data);
   const std::vector<pr::Look> looks =
       looks_at(read_documents(manifest, files, options.settings), manifest, files.data, options.frame);
+  check_outputs(files.picture, options.bits, looks);
   // Step 3: what they need of the dataset, and their textures at the same time.
   const auto textures = std::make_shared<pr::TextureCache>();
   std::jthread ahead([&] { read_textures_ahead(looks, *textures); });
@@ -95,7 +106,7 @@ int render_picture(const PostrenderOptions& options) {
                         *pr::kernels().front(), textures);
   seconds.read = watch.lap();
   // Step 4: the picture.
-  PictureMaker maker(files.picture);
+  PictureMaker maker(files.picture, options.bits);
   const pr::Image& image = maker.make(renderer, looks);
   seconds.render = watch.lap();
   pr::write_picture(files.picture, image, options.bits);

@@ -31,13 +31,18 @@ ChannelSet needed_channels(const std::vector<postrender::Look>& looks, const Man
 /// its message, when the texture is wanted.
 void read_textures_ahead(const std::vector<postrender::Look>& looks, postrender::TextureCache& textures);
 
+/// Throws InputError where the file cannot hold what a look puts out.
+void check_outputs(const std::string& picture, int bits, const std::vector<postrender::Look>& looks);
+
 /// Makes pictures for a file of that name, one look below the other, each with its legend; keeps its memory.
 class PictureMaker {
  public:
-  explicit PictureMaker(const std::string& picture);
+  PictureMaker(const std::string& picture, int bits);
   const postrender::Image& make(postrender::Renderer& renderer, const std::vector<postrender::Look>& looks);
 
  private:
+  void render(postrender::Renderer& renderer, const postrender::Look& look, postrender::Image& image) const;
+
   postrender::ImageParts parts_;
   postrender::Image image_;
 };

@@ -13,7 +13,7 @@ struct PostrenderOptions {
   ToolOptions common;
   std::string data, picture;
   std::vector<std::string> looks, settings;
-  int bits = 8;
+  int bits = 0;  ///< a component; 0: the usual of the file
   bool json = false;
   // One channel in place of a look.
   std::string show, range;

@@ -93,6 +93,7 @@ class Sequence {
     std::vector<pr::LookInFull> in_full;
     plan.looks = looks_at(read_documents(plan.manifest, files, options_.settings), plan.manifest, files.data,
                           files.frame, &in_full);
+    check_outputs(files.picture, options_.bits, plan.looks);
     plan.fingerprint = fingerprint_of(plan.manifest, in_full, options_.bits);
     std::vector<std::string> inputs = files.looks;
     inputs.push_back(files.data);
@@ -126,7 +127,7 @@ class Sequence {
         try {
           std::optional<pr::Renderer> own;
           if (shared) own.emplace(shared->sibling());
-          PictureMaker maker(options_.picture);
+          PictureMaker maker(options_.picture, options_.bits);
           for (std::size_t i = next++; i < wanted.size() && !stop_wanted && !failed_; i = next++)
             make(files_[wanted[i]], own ? &*own : nullptr, maker);
         } catch (...) {

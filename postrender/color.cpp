@@ -23,35 +23,23 @@ Matrix3 derive_xyz_to_srgb() {
   return out;
 }
 
-/// Exact 8 bit encoding without a power: no bin of the linear range holds more than one rounding threshold,
-/// because the curve is nowhere steeper than 12.92 * 255 = 3295 codes a unit.
-class Encoder8 {
- public:
-  static const Encoder8& instance() {
-    static const Encoder8 encoder;
-    return encoder;
+Srgb8Table make_srgb8_table() {
+  constexpr int kBins = Srgb8Table::kBins;
+  constexpr auto kPlaces = std::uint32_t{1} << Srgb8Table::kPlaceBits;
+  const auto threshold = [](std::uint32_t code) {  // from which on it is the code
+    return static_cast<float>(srgb_decoded((static_cast<double>(code) - 0.5) / 255.0));
+  };
+  Srgb8Table out{};
+  std::uint32_t code = 0;
+  for (int bin = 0; bin <= kBins; ++bin) {
+    while (code < 255 && threshold(code + 1) * kBins <= static_cast<float>(bin)) ++code;
+    const float place = code < 255 ? threshold(code + 1) * kBins - static_cast<float>(bin) : 1;
+    // Exact: all thresholds are multiples of 2^-36.
+    const auto first = place < 1 ? static_cast<std::uint32_t>(place * static_cast<float>(kPlaces)) : kPlaces;
+    out.entries[static_cast<std::size_t>(bin)] = (code << Srgb8Table::kPlaceBits) + (kPlaces - first);
   }
-  std::uint8_t operator()(float linear) const {
-    const float x = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
-    const std::size_t code = code_[static_cast<std::size_t>(x * kBins)];
-    return static_cast<std::uint8_t>(code + (x >= threshold_[code + 1] ? 1 : 0));
-  }
-
- private:
-  Encoder8() {
-    for (std::size_t code = 0; code < 256; ++code)
-      threshold_[code] = static_cast<float>(srgb_decoded((static_cast<double>(code) - 0.5) / 255.0));
-    threshold_[256] = 2;  // never reached
-    std::size_t code = 0;
-    for (std::size_t bin = 0; bin <= kBins; ++bin) {
-      while (code < 255 && threshold_[code + 1] <= static_cast<float>(bin) / kBins) ++code;
-      code_[bin] = static_cast<std::uint8_t>(code);
-    }
-  }
-  static constexpr int kBins = 4096;
-  std::array<float, 257> threshold_{};
-  std::array<std::uint8_t, kBins + 1> code_{};
-};
+  return out;
+}
 
 std::uint16_t encode16(float linear) {
   const double x = linear > 0 ? std::min(static_cast<double>(linear), 1.0) : 0.0;
@@ -80,22 +68,25 @@ double srgb_encoded(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+const Srgb8Table& Srgb8Table::instance() {
+  static const Srgb8Table table = make_srgb8_table();
+  return table;
+}
+
+std::uint8_t Srgb8Table::operator()(float linear) const {
+  const float at = kBins * (linear > 0 ? std::min(linear, 1.0f) : 0.0f);
+  const auto bin = static_cast<std::size_t>(at);
+  const float place = (1 << kPlaceBits) * (at - static_cast<float>(bin));
+  return static_cast<std::uint8_t>((entries[bin] + static_cast<std::uint32_t>(place)) >> kPlaceBits);
+}
+
 std::vector<std::uint8_t> encode_srgb8(std::span<const Rgb> colors) {
-  const Encoder8& encode = Encoder8::instance();
+  const Srgb8Table& encode = Srgb8Table::instance();
   std::vector<std::uint8_t> out(3 * colors.size());
   std::uint8_t* at = out.data();
   for (const Rgb c : colors)
     for (const float component : {c.r, c.g, c.b}) *at++ = encode(component);
   return out;
-}
-
-void encode_srgb8(std::span<const float> r, const float* g, const float* b, std::uint8_t* out) {
-  const Encoder8& encode = Encoder8::instance();
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    out[3 * i] = encode(r[i]);
-    out[3 * i + 1] = encode(g[i]);
-    out[3 * i + 2] = encode(b[i]);
-  }
 }
 
 std::vector<std::uint16_t> encode_srgb16(std::span<const Rgb> colors) {

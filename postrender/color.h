@@ -29,10 +29,20 @@ constexpr float luminance(Rgb c) { return kLuminance.r * c.r + kLuminance.g * c.
 double srgb_decoded(double encoded);
 double srgb_encoded(double linear);
 
+/// Exact 8 bit encoding of a linear x in [0, 1] without a power, and in one look: with x kBins = bin + place,
+/// code = (entries[bin] + place 2^kPlaceBits) >> kPlaceBits. No bin holds more than one rounding threshold,
+/// because the curve is nowhere steeper than 12.92 * 255 = 3295 codes a unit.
+struct Srgb8Table {
+  static constexpr int kBins = 4096, kPlaceBits = 24;
+  std::array<std::uint32_t, kBins + 1> entries;
+
+  static const Srgb8Table& instance();
+  std::uint8_t operator()(float linear) const;  ///< clamped; 0 for NaN
+};
+
 /// Encoded 8 bit and 16 bit components, three a pixel, correctly rounded. Components are clamped to [0, 1];
 /// NaN is 0.
 std::vector<std::uint8_t> encode_srgb8(std::span<const Rgb> colors);
-void encode_srgb8(std::span<const float> r, const float* g, const float* b, std::uint8_t* out);
 std::vector<std::uint16_t> encode_srgb16(std::span<const Rgb> colors);
 
 /// The flat colour of an object that the look does not mention, by its number from 1: hues far apart.

@@ -34,6 +34,16 @@ struct Radiance {
   std::vector<Rgbx> physical;  ///< cd/m^2; empty when nothing in the look is physical
 };
 
+/// What the components of a developed picture mean. The first two are encoded with the sRGB transfer curve
+/// for screens, and linear in float files; the last two are for float files only.
+enum class OutputSpace { srgb, display_p3, linear_rec709, xyz };
+
+struct Output {
+  OutputSpace space = OutputSpace::srgb;
+  int jpeg_quality = 95;
+  bool operator==(const Output&) const = default;
+};
+
 /// A developed picture.
 struct Image {
   int width = 0, height = 0;
@@ -41,6 +51,7 @@ struct Image {
   std::vector<Rgb> exposed;           ///< after exposure, before tone curve and gamut mapping: for EXR files
   std::vector<Rgb> display;           ///< linear, within [0, 1]: for screens, PNG and JPEG
   std::vector<std::uint8_t> encoded;  ///< `display` as encode_srgb8() makes it, where it was asked for
+  Output output = {};                 ///< what the components of all three mean
 };
 
 /// Which of its parts a picture shall have; the others are left empty.

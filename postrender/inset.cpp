@@ -59,6 +59,7 @@ Dataset line_of(std::uint32_t id, const std::vector<double>& ratios, const Manif
 Look look_of_scale(const Look& look, const std::string& object, double white_cd_m2) {
   Look out;
   out.effects = look.effects;
+  out.sensor = look.sensor;
   out.develop = look.develop;
   out.develop.white_cd_m2 = white_cd_m2;
   AppearanceLook& appearance = out.objects[object].appearance;

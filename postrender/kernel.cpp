@@ -23,8 +23,11 @@ const Kernel NULLCONE_POSTRENDER_KERNEL = {
     NULLCONE_ISA::background_light,
     NULLCONE_ISA::expose,
     NULLCONE_ISA::exponential_curve,
+    NULLCONE_ISA::filmic_curve,
+    NULLCONE_ISA::table_curve,
     NULLCONE_ISA::desaturate,
     NULLCONE_ISA::clip,
+    NULLCONE_ISA::encode_srgb8,
     NULLCONE_ISA::interleave,
 };
 

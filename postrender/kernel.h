@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "postrender/color.h"
 #include "postrender/image.h"
 #include "postrender/spectrum.h"
 #include "postrender/texture.h"
@@ -68,6 +69,28 @@ struct Planes {
   float *r, *g, *b;
 };
 
+/// No exposed component is greater: far beyond all light, and far enough from where float ends.
+inline constexpr float kBrightest = 1e36f;
+
+/// colour = gain * display + physical_gain * physical, then through the matrix (three rows), unless null.
+struct Exposure {
+  float gain, physical_gain;
+  const Rgb* matrix;
+};
+
+/// Y -> Y (a1 x + a0) / ((b2 x + b1) x + b0) with x = stretch Y; 1 from `white` on.
+struct FilmicCurve {
+  float a1, a0, b2, b1, b0, stretch, white;
+};
+
+/// Nodes of a ToneTable stand where the upper bits of a float luminance change: 2^kToneNodeBits an octave.
+inline constexpr int kToneNodeBits = 9, kToneShift = 23 - kToneNodeBits;
+struct ToneTableView {
+  const float* nodes;
+  std::int32_t first;  ///< upper bits of the first node's luminance
+  float lowest, highest;
+};
+
 /// Pixels that go through all steps together, so that what passes from step to step stays in the first cache.
 inline constexpr std::size_t kSegment = 256;
 
@@ -95,11 +118,19 @@ struct Kernel {
   /// sum += transmittance * color.
   void (*background)(const float* transmittance, const Rgbx& color, std::size_t count, Rgbx* sum);
   // Development, in place but for the first and the last step.
-  void (*expose)(const Rgbx* display, float gain, const Rgbx* physical, float physical_gain,
-                 std::size_t count, const Planes& out);
-  void (*exponential_curve)(float k, std::size_t count, const Planes& colors);
-  void (*desaturate)(std::size_t count, const Planes& colors);
+  // `physical` may be null; `weights` make luminances of components. What is exposed is at most kBrightest,
+  // and black where radiance is not a number.
+  void (*expose)(const Rgbx* display, const Rgbx* physical, const Exposure& by, std::size_t count,
+                 const Planes& out);
+  void (*exponential_curve)(float k, const Rgb& weights, std::size_t count, const Planes& colors);
+  void (*filmic_curve)(const FilmicCurve& curve, const Rgb& weights, std::size_t count, const Planes& colors);
+  void (*table_curve)(const ToneTableView& table, const Rgb& weights, std::size_t count,
+                      const Planes& colors);
+  void (*desaturate)(const Rgb& weights, std::size_t count, const Planes& colors);
   void (*clip)(std::size_t count, const Planes& colors);
+  /// At most kSegment colours, with the entries of Srgb8Table.
+  void (*encode_srgb8)(const std::uint32_t* table, const Planes& colors, std::size_t count,
+                       std::uint8_t* out);
   void (*interleave)(const Planes& colors, std::size_t count, Rgb* out);
 };
 

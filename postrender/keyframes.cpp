@@ -11,9 +11,6 @@ namespace nullcone::postrender {
 
 using nlohmann::json;
 
-namespace {
-
-/// Slopes that keep a cubic within its keys (Fritsch and Carlson 1980, with the harmonic mean).
 std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
   const std::size_t n = x.size();
   std::vector<double> out(n, 0.0);
@@ -27,8 +24,6 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
   }
   return out;
 }
-
-}  // namespace
 
 double Keyframes::at(double time) const {
   if (!(time > times.front())) return values.front();

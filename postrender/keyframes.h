@@ -20,6 +20,10 @@ struct Keyframes {
   bool operator==(const Keyframes&) const = default;
 };
 
+/// Slopes at the points (x, y) for a cubic that keeps between them (Fritsch and Carlson 1980, with the
+/// harmonic mean); 0 at both ends.
+std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y);
+
 /// Whether a value of a look is one that changes with time.
 bool is_keyframes(const nlohmann::json& value);
 /// Throws InputError "place: pointer: ...".

@@ -61,7 +61,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
   look.effects = parse_effects(in.object_or_empty("effects"));
   look.sensor = parse_sensor(in, "sensor", source);
   look.pixel_filter = parse_pixel_filter(in.object_or_empty("pixel_filter"));
-  look.develop = parse_develop(in);
+  look.develop = parse_develop(in, source);
   if (in.has("legend")) look.legend = parse_legend(in.object("legend"), source, document, manifest);
   look.background = parse_color_or(in, "background", {});
   in.finish();

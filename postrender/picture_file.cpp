@@ -4,10 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "postrender/color.h"
+#include "postrender/color_space.h"
+#include "postrender/icc_profile.h"
 #include "postrender/picture_stamp.h"
 
 namespace nullcone::postrender {
@@ -21,14 +25,51 @@ namespace fs = std::filesystem;
 
 static_assert(sizeof(Rgb) == 3 * sizeof(float), "pictures go to files as they lie in memory");
 
-/// OpenImageIO's name of the format, or an empty text.
-std::string format_of(const std::string& path) {
+/// Of PNG: zlib's level, and libpng's filter PNG_FILTER_UP. See docs/look.md for what others would cost.
+constexpr int kPngLevel = 1, kPngFilter = 32;
+
+/// A kind of file.
+struct Kind {
+  std::string_view format;                  ///< OpenImageIO's name
+  std::array<std::string_view, 2> endings;  ///< the second may be empty
+  std::array<int, 3> bits;                  ///< the usual one first; 0 is none
+  std::string_view bits_text;
+};
+
+constexpr std::array<Kind, 4> kKinds = {{{"png", {".png", ""}, {8, 16, 0}, "8 or 16"},
+                                         {"jpeg", {".jpg", ".jpeg"}, {8, 0, 0}, "8"},
+                                         {"tiff", {".tif", ".tiff"}, {8, 16, 32}, "8, 16 or 32"},
+                                         {"openexr", {".exr", ""}, {32, 16, 0}, "16 or 32"}}};
+
+const Kind* find_kind(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-  if (ending == ".png") return "png";
-  if (ending == ".jpg" || ending == ".jpeg") return "jpeg";
-  return ending == ".exr" ? "openexr" : "";
+  for (const Kind& kind : kKinds)
+    if (!ending.empty() && std::ranges::count(kind.endings, ending) > 0) return &kind;
+  return nullptr;
+}
+
+/// What a file holds: its kind, and bits a component as OpenImageIO calls them.
+struct Content {
+  const Kind& kind;
+  TypeDesc type;
+  bool linear() const { return type.is_floating_point(); }
+};
+
+Content content_of(const std::string& path, int bits) {
+  const Kind* kind = find_kind(path);
+  if (kind == nullptr)
+    throw InputError(path, "unknown kind of picture; expected .png, .jpg, .jpeg, .tif, .tiff or .exr");
+  if (bits == 0) bits = kind->bits.front();
+  if (bits < 0 || std::ranges::count(kind->bits, bits) == 0)
+    throw InputError("--bits", "expected " + std::string(kind->bits_text) + " for " +
+                                   std::string(kind->endings.front()) + " files");
+  const bool half = kind->format == "openexr" && bits == 16;
+  return {*kind, half         ? TypeDesc::HALF
+                 : bits == 32 ? TypeDesc::FLOAT
+                 : bits == 16 ? TypeDesc::UINT16
+                              : TypeDesc::UINT8};
 }
 
 /// A file that is removed unless it is renamed into place.
@@ -56,58 +97,107 @@ class PartFile {
   bool done_ = false;
 };
 
-/// The same picture is the same file: without this OpenImageIO puts the time of writing into it.
-void finish_exr_spec(ImageSpec& spec) {
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");
+/// Where the primaries and the white stand, for OpenEXR.
+void add_chromaticities(ImageSpec& spec, OutputSpace space) {
+  const Primaries p = primaries_of(space);
+  std::array<float, 8> xy{};
+  std::size_t i = 0;
+  for (const Chromaticity& c : {p.red, p.green, p.blue, p.white}) {
+    xy[i++] = static_cast<float>(c.x);
+    xy[i++] = static_cast<float>(c.y);
+  }
+  spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), xy.data());
 }
 
-ImageSpec spec_of(const Image& image, const std::string& format, TypeDesc type,
-                  const std::string& fingerprint) {
-  ImageSpec spec(image.width, image.height, 3, type);
+/// sRGB in PNG has a chunk of its own; EXR has chromaticities; all else has a profile.
+void add_color_space(ImageSpec& spec, const Content& content, OutputSpace space) {
+  if (content.kind.format == "openexr") return add_chromaticities(spec, space);
+  if (!content.linear() && space == OutputSpace::srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (content.kind.format == "png" && space == OutputSpace::srgb) return;
+  const std::vector<std::uint8_t> profile = icc_profile(space, content.linear());
+  if (!profile.empty())
+    spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, static_cast<int>(profile.size())), profile.data());
+}
+
+ImageSpec spec_of(const Image& image, const Content& content, const std::string& fingerprint) {
+  ImageSpec spec(image.width, image.height, 3, content.type);
   if (!fingerprint.empty()) spec.attribute("ImageDescription", fingerprint_comment(fingerprint));
-  spec.attribute("oiio:ColorSpace", format == "openexr" ? "Linear" : "sRGB");
-  if (format == "jpeg") spec.attribute("Compression", "jpeg:95");
-  if (format == "jpeg") spec.attribute("jpeg:subsampling", "4:4:4");
-  if (format == "openexr") finish_exr_spec(spec);
+  add_color_space(spec, content, image.output.space);
+  if (content.kind.format == "jpeg") {
+    spec.attribute("Compression", "jpeg:" + std::to_string(image.output.jpeg_quality));
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
+  if (content.kind.format == "png") {
+    spec.attribute("png:compressionLevel", kPngLevel);
+    spec.attribute("png:filter", kPngFilter);
+  }
+  if (content.linear() || content.kind.format == "tiff") spec.attribute("compression", "zip");
   return spec;
 }
 
-void write(const std::string& path, const std::string& part, const std::string& format, const ImageSpec& spec,
-           const void* pixels) {
-  const std::unique_ptr<ImageOutput> out = ImageOutput::create(format);
-  if (!out) throw WorkError(path, "this build of OpenImageIO cannot write " + format);
-  const bool written = out->open(part, spec) && out->write_image(spec.format, pixels) && out->close();
+void write(const std::string& path, const std::string& part, std::string_view format, ImageSpec spec,
+           TypeDesc type, const void* pixels) {
+  spec.attribute("DateTime", "");  // else that of writing, and the same picture would make other bytes
+  const std::unique_ptr<ImageOutput> out = ImageOutput::create(std::string(format));
+  if (!out) throw WorkError(path, "this build of OpenImageIO cannot write " + std::string(format));
+  const bool written = out->open(part, spec) && out->write_image(type, pixels) && out->close();
   if (!written) throw WorkError(path, "cannot be written: " + out->geterror());
+}
+
+/// As far as half floats go.
+std::vector<Rgb> limited_to_half(const std::vector<Rgb>& colors) {
+  constexpr float kMost = 65504;
+  std::vector<Rgb> out(colors);
+  for (Rgb& c : out)
+    for (float* x : {&c.r, &c.g, &c.b}) *x = std::clamp(*x, -kMost, kMost);
+  return out;
+}
+
+void check_output(const std::string& path, const Content& content, OutputSpace space) {
+  if (content.linear() || space == OutputSpace::srgb || space == OutputSpace::display_p3) return;
+  throw InputError(path, "output space " + std::string(name_of(space)) +
+                             " is linear; expected .exr, or .tif with --bits 32");
 }
 
 }  // namespace
 
-void check_picture_name(const std::string& path, int bits) {
-  const std::string format = format_of(path);
-  if (format.empty()) throw InputError(path, "unknown kind of picture; expected .png, .jpg, .jpeg or .exr");
-  if (bits != 8 && bits != 16) throw InputError("--bits", "expected 8 or 16");
-  if (bits == 16 && format != "png") throw InputError("--bits", "16 bits need a .png file");
+void check_picture_name(const std::string& path, int bits) { content_of(path, bits); }
+
+void check_output(const std::string& path, int bits, const Output& output) {
+  check_output(path, content_of(path, bits), output.space);
+}
+
+ImageParts parts_in(const std::string& path, int bits) {
+  const Content content = content_of(path, bits);
+  const bool bytes = content.type == TypeDesc::UINT8;
+  return {.exposed = content.linear(), .display = !content.linear() && !bytes, .encoded = bytes};
 }
 
 void write_picture(const std::string& path, const Image& image, int bits, const std::string& fingerprint) {
-  check_picture_name(path, bits);
-  const std::string format = format_of(path);
+  const Content content = content_of(path, bits);
+  check_output(path, content, image.output.space);
+  if (content.linear() && image.exposed.empty())
+    throw InputError(path, "this picture has no more than 8 or 16 bits; expected .png, .jpg or .tif");
   PartFile part(path);
-  if (format == "openexr") {
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::FLOAT, fingerprint),
-          image.exposed.data());
-  } else if (bits == 16) {
-    const auto encoded = encode_srgb16(image.display);
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT16, fingerprint), encoded.data());
+  const auto put = [&](TypeDesc type, const void* pixels) {
+    write(path, part.name(), content.kind.format, spec_of(image, content, fingerprint), type, pixels);
+  };
+  if (content.type == TypeDesc::HALF) {
+    put(TypeDesc::FLOAT, limited_to_half(image.exposed).data());
+  } else if (content.linear()) {
+    put(TypeDesc::FLOAT, image.exposed.data());
+  } else if (content.type == TypeDesc::UINT16) {
+    put(TypeDesc::UINT16, encode_srgb16(image.display).data());
   } else {
-    const auto encoded = encode_srgb8(image.display);
-    write(path, part.name(), format, spec_of(image, format, TypeDesc::UINT8, fingerprint), encoded.data());
+    put(TypeDesc::UINT8, (image.encoded.empty() ? encode_srgb8(image.display) : image.encoded).data());
   }
   part.rename();
 }
 
-bool is_exr_name(const std::string& path) { return format_of(path) == "openexr"; }
+bool is_exr_name(const std::string& path) {
+  const Kind* kind = find_kind(path);
+  return kind != nullptr && kind->format == "openexr";
+}
 
 void write_channel(const std::string& path, const std::string& channel, const Manifest& manifest,
                    std::span<const float> values) {
@@ -117,8 +207,8 @@ void write_channel(const std::string& path, const std::string& channel, const Ma
   spec.full_height = manifest.height;
   spec.channelnames = {channel};
   spec.z_channel = -1;
-  finish_exr_spec(spec);
-  write(path, part.name(), "openexr", spec, values.data());
+  spec.attribute("compression", "zip");
+  write(path, part.name(), "openexr", spec, TypeDesc::FLOAT, values.data());
   part.rename();
 }
 

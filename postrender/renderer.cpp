@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "postrender/color.h"
 #include "postrender/develop.h"
+#include "postrender/exposure.h"
 #include "postrender/needed_channels.h"
 #include "postrender/sample_grid.h"
 #include "postrender/texture_maker.h"
@@ -81,8 +82,8 @@ void set_emission(Appearance& out, const AppearanceLook& look, const Number& opa
   out.emission.intensity = look.intensity.value_or(Number{1});
   out.emission.blink = look.blink;
   if (look.spectrum_in_time.temperature_K)
-    out.emission.temperature = {*look.spectrum_in_time.temperature_K,
-                                look.spectrum_in_time.reference_K, effects};
+    out.emission.temperature = {*look.spectrum_in_time.temperature_K, look.spectrum_in_time.reference_K,
+                                effects};
   out.changes = out.emission != Emission{};
 }
 
@@ -239,6 +240,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   // Step 1: textures and tables.
   Shading shading = prepare(look);
   set_size(image, manifest_.width, manifest_.lines, parts);
+  image.output = look.develop.output;
   // Step 2: shade line by line, unless only the development changed. Radiance is kept where the white must be
   // found in it, where pixels take in several samples, and from the second picture of the same shading on.
   const bool physical = has_physical(shading),
@@ -257,7 +259,9 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   }
   // Step 3: develop.
   image.white_cd_m2 = 1;
-  if (physical) image.white_cd_m2 = white_known ? *look.develop.white_cd_m2 : auto_white_cd_m2(radiance_);
+  if (physical)
+    image.white_cd_m2 =
+        white_known ? *look.develop.white_cd_m2 : auto_white_cd_m2(radiance_, look.develop.auto_white);
   if (kept_) {
     develop_kept(look.develop, image);
   } else {

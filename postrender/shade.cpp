@@ -232,8 +232,8 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pa
       const SeenReference seen =
           seen_reference(*appearance.emission.temperature, time_at(first + i), lit.g[i]);
       shift_[i] = seen.shift;
-      constexpr double kBrightest = 1e30;  // beyond, 0 times infinity would be no number
-      light_[i] = static_cast<float>(std::min(static_cast<double>(lit.weight[i]) * seen.factor, kBrightest));
+      constexpr double kMost = 1e30;  // beyond, 0 times infinity would be no number
+      light_[i] = static_cast<float>(std::min(static_cast<double>(lit.weight[i]) * seen.factor, kMost));
     }
     lit.g = shift_.data();
     lit.weight = light_.data();

@@ -40,9 +40,9 @@ double magnitude(const Color& c) { return std::max({std::abs(c[0]), std::abs(c[1
 
 Color bounded(Color c) {
   const double largest = magnitude(c);
-  if (largest <= kBrightest) return c;
-  if (!(largest < std::numeric_limits<double>::infinity())) return {kBrightest, kBrightest, kBrightest};
-  for (double& x : c) x *= kBrightest / largest;
+  if (largest <= kBrightestEntry) return c;
+  if (!(largest < std::numeric_limits<double>::infinity())) return {kBrightestEntry, kBrightestEntry, kBrightestEntry};
+  for (double& x : c) x *= kBrightestEntry / largest;
   return c;
 }
 

@@ -62,7 +62,7 @@ struct TableView {
 /// error is below kTableError, or until they take kTableBytes.
 class SpectralTable {
  public:
-  /// Components beyond kBrightest are scaled down to it, the three alike.
+  /// Components beyond kBrightestEntry are scaled down to it, the three alike.
   using Colors = std::function<std::array<double, 3>(double g)>;
   SpectralTable(const std::vector<Colors>& colors, ShiftRange range);
 
@@ -81,7 +81,7 @@ class SpectralTable {
 
 inline constexpr double kTableError = 3e-8;
 inline constexpr std::size_t kTableBytes = std::size_t{1} << 20;
-inline constexpr double kBrightest = 1e28;
+inline constexpr double kBrightestEntry = 1e28;
 
 /// Spectral lines, which no table resolves: each is looked up in the sensor's own curves.
 struct LineTable {

@@ -12,6 +12,7 @@ packages=(
   libtbb-dev            # threads
   libopenexr-dev libimath-dev   # datasets
   libopenimageio-dev    # textures and pictures
+  liblcms2-dev          # ICC profiles in pictures
   libmurmurhash-dev     # names in Cryptomatte layers
   nlohmann-json3-dev libcli11-dev libssl-dev   # JSON, command lines, SHA-256
   libgtest-dev libbenchmark-dev python3   # tests and benchmarks

@@ -4,6 +4,7 @@
 #include "postrender/black_body.h"
 #include "postrender/cie1931.h"
 #include "postrender/color.h"
+#include "postrender/color_space.h"
 #include "tests/postrender_fixture.h"
 
 namespace nullcone::postrender {
@@ -103,6 +104,92 @@ TEST_P(ShiftedPlanck, is_planck_of_the_shifted_temperature) {
   expect_close(std::pow(g, 5) * planck_W_m3_sr(g * seen_m, T), out["B_obs_W_m3_sr"], one["tol"]);
 }
 INSTANTIATE_TEST_SUITE_P(Cases, ShiftedPlanck, testing::Values(1, 2, 3));
+
+void expect_matrix(const Matrix3& found, const Matrix3& expected, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(found[i][j], expected[i][j], tolerance) << i << j;
+}
+
+std::array<double, 3> times(const Matrix3& m, const std::array<double, 3>& v) {
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+  return out;
+}
+
+Xyz of_luminance_1(const Chromaticity& c) { return {c.x / c.y, 1, (1 - c.x - c.y) / c.y}; }
+
+TEST(ColorSpace, primaries_have_the_xyz_that_is_published) {
+  // SMPTE EG 432-1 primaries with D65, as Apple's profile and CSS Color 4 (section 17) have them.
+  expect_matrix(to_xyz(OutputSpace::display_p3),
+                {{{0.4865709486, 0.2656676932, 0.1982172852},
+                  {0.2289745641, 0.6917385218, 0.0792869141},
+                  {0, 0.0451133819, 1.0439443689}}},
+                1e-9);
+  for (std::size_t j = 0; j < 3; ++j) {  // the inverse of what color.cpp derives
+    std::array<double, 3> one{};
+    one[j] = 1;
+    EXPECT_NEAR(linear_srgb(times(to_xyz(OutputSpace::srgb), one))[j], 1, 1e-14);
+  }
+  EXPECT_EQ(luminance_weights(OutputSpace::srgb), kLuminance);
+  EXPECT_EQ(luminance_weights(OutputSpace::xyz), (Rgb{0, 1, 0}));
+}
+
+TEST(ColorSpace, rec_709_in_other_spaces) {
+  EXPECT_FALSE(output_matrix(OutputSpace::srgb, kD65));
+  EXPECT_FALSE(output_matrix(OutputSpace::linear_rec709, kD65));
+  expect_matrix(*output_matrix(OutputSpace::display_p3, kD65),  // CSS Color 4
+                {{{0.8224619687, 0.1775380313, 0},
+                  {0.0331941989, 0.9668058011, 0},
+                  {0.0170826307, 0.0723974407, 0.9105199286}}},
+                1e-9);
+  expect_matrix(*output_matrix(OutputSpace::xyz, kD65), to_xyz(OutputSpace::srgb), 1e-15);
+}
+
+TEST(ColorSpace, adaptation_is_bradfords) {
+  // D65 -> D50 of B. Lindbloom's page, whose whites have five digits and not quite these chromaticities.
+  const double sum = 0.96422 + 1 + 0.82521;
+  expect_matrix(*adaptation(kD65, {0.96422 / sum, 1 / sum}),
+                {{{1.0478112, 0.0228866, -0.0501270},
+                  {0.0295424, 0.9904844, -0.0170491},
+                  {-0.0092345, 0.0150436, 0.7521316}}},
+                3e-4);
+  EXPECT_FALSE(adaptation({0.735, 0.265}, kD65));  // spectral red: nothing for the short cones
+}
+
+TEST(ColorSpace, light_of_the_white_point_is_shown_as_white) {
+  for (const Chromaticity& white :
+       {kD65, kEqualEnergy, black_body_chromaticity(3000), Chromaticity{0.25, 0.25}})
+    for (const OutputSpace space : {OutputSpace::srgb, OutputSpace::display_p3}) {
+      const auto rgb = linear_srgb(of_luminance_1(white));
+      const Rgb light = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+      DevelopLook look;
+      look.white_point = white;
+      look.output.space = space;
+      expect_color(developed(light, look).exposed[0], {1, 1, 1}, 1e-6f);  // floats of up to 3
+    }
+  DevelopLook look;
+  look.white_point = kEqualEnergy;
+  look.output.space = OutputSpace::xyz;  // the white of the screen stays D65
+  const auto rgb = linear_srgb({1, 1, 1});
+  const Rgb light = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+  expect_color(developed(light, look).exposed[0], {0.9504559f, 1, 1.0890578f}, 1e-6f);
+}
+
+TEST(ColorSpace, the_gamut_is_that_of_the_output) {
+  // Display P3's green at half its light: Rec. 709 cannot show it.
+  DevelopLook p3;
+  p3.output.space = OutputSpace::display_p3;
+  const auto rgb = linear_srgb(times(to_xyz(OutputSpace::display_p3), {0, 0.5, 0}));
+  const Rgb green = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+  expect_color(developed(green, p3).display[0], {0, 0.5f, 0}, 1e-6f);
+  EXPECT_LT(green.r, -0.1f);
+  const Rgb mapped = developed(green, {}).display[0];
+  EXPECT_NEAR(std::min({mapped.r, mapped.g, mapped.b}), 0, 1e-6f);  // at the border of its own gamut
+  // Out of this gamut too, mapped in it: luminance stays.
+  const Rgb out = developed({-1, 1.1f, -0.2f}, p3).display[0],
+            weights = luminance_weights(OutputSpace::display_p3);
+  EXPECT_NEAR(weights.r * out.r + weights.g * out.g + weights.b * out.b, luminance({-1, 1.1f, -0.2f}), 1e-6f);
+}
 
 TEST(Color, default_colors_differ) {
   for (std::uint32_t a = 1; a <= 12; ++a)

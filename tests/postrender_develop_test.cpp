@@ -1,12 +1,11 @@
-// Exposure, tone curve, gamut mapping, and pictures in files.
+// Exposure, tone curve, gamut mapping.
 #include <algorithm>
 #include <cmath>
-
-#include <OpenImageIO/imageio.h>
+#include <limits>
+#include <random>
 
 #include "postrender/color.h"
 #include "postrender/develop.h"
-#include "postrender/picture_file.h"
 #include "tests/postrender_fixture.h"
 
 namespace nullcone::postrender {
@@ -59,7 +58,7 @@ TEST(Gamut, colors_inside_stay_and_extremes_end_at_black_and_white) {
   EXPECT_EQ(mapped_into_gamut({NAN, 0, 0}), Rgb{});
   DevelopLook clip;
   clip.gamut = DevelopLook::Gamut::clip;
-  EXPECT_EQ(developed({-1, 0.5f, NAN}, clip).display[0], (Rgb{0, 0.5f, 0}));
+  EXPECT_EQ(developed({-1, 0.5f, 7}, clip).display[0], (Rgb{0, 0.5f, 1}));
 }
 
 TEST(Tone, exponential_acts_on_the_luminance) {
@@ -93,92 +92,100 @@ TEST(Tone, extremes_do_not_break_the_exponential_curve) {
   EXPECT_EQ(developed({NAN, 1, 1}, look).display[0], Rgb{});
 }
 
-TEST(Exposure, auto_white_is_the_99th_percentile_of_lit_pixels) {
-  Radiance radiance;
-  for (int i = 0; i <= 1000; ++i) {
-    const auto Y =
-        static_cast<float>((i * 617) % 1001);  // 0 to 1000, shuffled: 617 and 1001 have no common divisor
-    radiance.physical.emplace_back(Y, Y, Y);
-  }
-  // 1000 lit pixels, 1 to 1000; position floor(0.99 * 999) = 989 holds 990.
-  EXPECT_NEAR(auto_white_cd_m2(radiance), 990, 1e-3);
-  EXPECT_EQ(auto_white_cd_m2({{}, std::vector<Rgbx>(2)}), 1);
+DevelopLook look_with(const std::string& text) { return look_of(text, {}).develop; }
+
+/// All ways to develop that differ in code.
+std::vector<DevelopLook> all_looks() {
+  std::vector<DevelopLook> out;
+  for (const char* tone :
+       {R"({})", R"({"curve":"exponential","k":1e6})", R"({"curve":"exponential"})", R"({"curve":"filmic"})",
+        R"({"curve":"table","points":[[1e-9,0],[1,0.5],[1e20,1]]})"})
+    for (const char* gamut : {"hue_preserving", "clip"})
+      for (const char* white : {R"("D65")", R"("equal_energy")", R"({"temperature_K":1500})"})
+        for (const char* space : {"srgb", "display_p3", "xyz"})
+          out.push_back(look_with(std::string(R"({"tone":)") + tone + R"(,"gamut":")" + gamut +
+                                  R"(","white_point":)" + white + R"(,"output":{"space":")" + space +
+                                  R"("}})"));
+  return out;
 }
 
-class PictureFile : public testing::Test {
- protected:
-  static Image ramp() {
-    Image image{256, 2, 1, {}, {}, {}};
-    for (int i = 0; i < 512; ++i) {
-      const auto x = static_cast<float>(srgb_decoded((i % 256) / 255.0));
-      image.display.push_back({x, 0.5f * x, i < 256 ? 1.0f : 0.0f});
-      image.exposed.push_back({3 * x, -x, 1e6f});
-    }
-    return image;
-  }
-  template <class T>
-  static std::vector<T> read(const std::string& path, OIIO::TypeDesc type) {
-    const auto in = OIIO::ImageInput::open(path);
-    EXPECT_TRUE(in) << path;
-    if (!in) return {};
-    EXPECT_EQ(in->spec().format, type);
-    std::vector<T> out(static_cast<std::size_t>(in->spec().width * in->spec().height * 3));
-    EXPECT_TRUE(in->read_image(0, 0, 0, 3, type, out.data()));
-    return out;
-  }
-  TestFolder folder;
-};
-
-TEST_F(PictureFile, png_holds_the_encoded_picture_exactly) {
-  const Image image = ramp();
-  write_picture(folder.file("a.PNG"), image);
-  EXPECT_EQ(read<std::uint8_t>(folder.file("a.PNG"), OIIO::TypeDesc::UINT8), encode_srgb8(image.display));
-  write_picture(folder.file("b.png"), image, 16);
-  EXPECT_EQ(read<std::uint16_t>(folder.file("b.png"), OIIO::TypeDesc::UINT16), encode_srgb16(image.display));
+/// A run of colours, developed with one instruction set.
+Image developed_run(const std::vector<Rgbx>& display, const std::vector<Rgbx>& physical,
+                    const DevelopLook& look, double white_cd_m2, const Kernel& kernel) {
+  Image image;
+  set_size(image, static_cast<int>(display.size()), 1, {true, true, true});
+  image.white_cd_m2 = white_cd_m2;
+  LineDeveloper(look, kernel).develop(display.data(), physical.data(), 0, display.size(), image);
+  return image;
 }
 
-TEST_F(PictureFile, exr_holds_the_untoned_picture_exactly) {
-  const Image image = ramp();
-  write_picture(folder.file("a.exr"), image);
-  const auto found = read<float>(folder.file("a.exr"), OIIO::TypeDesc::FLOAT);
-  for (std::size_t i = 0; i < image.exposed.size(); ++i)
-    EXPECT_EQ((Rgb{found[3 * i], found[3 * i + 1], found[3 * i + 2]}), image.exposed[i]);
+TEST(Development, shows_no_nonsense_for_any_radiance) {
+  constexpr float kMost = std::numeric_limits<float>::max(), kTiny = std::numeric_limits<float>::denorm_min();
+  std::vector<Rgbx> display, physical;
+  const std::vector<float> values = {0,     -0.0f, 1,      kTiny,    -kTiny,    1e-38f,
+                                     1e20f, kMost, -kMost, INFINITY, -INFINITY, NAN};
+  for (const float r : values)
+    for (const float g : values)
+      for (const float b : values) {
+        display.emplace_back(r, g, b);
+        physical.emplace_back(b, r, 0.5f);
+      }
+  for (DevelopLook look : all_looks())
+    for (const double ev : {0.0, 64.0, -64.0})
+      for (const double white : {1.0, 1e-45, 1e38}) {
+        look.ev = ev;
+        Image first;
+        for (const Kernel* kernel : kernels()) {
+          const Image image = developed_run(display, physical, look, white, *kernel);
+          if (kernel == kernels().front()) first = image;
+          EXPECT_EQ(image.exposed, first.exposed) << kernel->isa;
+          EXPECT_EQ(image.display, first.display) << kernel->isa;
+          EXPECT_EQ(image.encoded, first.encoded) << kernel->isa;
+        }
+        const auto within = [](const std::vector<Rgb>& colors, float least, float most) {
+          return std::ranges::all_of(colors, [&](Rgb c) {
+            return std::min({c.r, c.g, c.b}) >= least && std::max({c.r, c.g, c.b}) <= most && c.r == c.r &&
+                   c.g == c.g && c.b == c.b;
+          });
+        };
+        EXPECT_TRUE(within(first.exposed, -kBrightest, kBrightest));
+        EXPECT_TRUE(within(first.display, 0, 1));
+      }
 }
 
-TEST_F(PictureFile, jpeg_is_near) {
-  const Image image = ramp();
-  write_picture(folder.file("a.jpg"), image);
-  const auto found = read<std::uint8_t>(folder.file("a.jpg"), OIIO::TypeDesc::UINT8);
-  const auto expected = encode_srgb8(image.display);
-  ASSERT_EQ(found.size(), expected.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) sum += std::abs(found[i] - expected[i]);
-  EXPECT_LT(sum / static_cast<double>(found.size()), 6);  // quality 95, with a hard edge between the two rows
-}
-
-TEST_F(PictureFile, the_same_picture_makes_the_same_bytes) {
-  const auto bytes = [&](const std::string& name) {
-    write_picture(folder.file(name), ramp());
-    std::ifstream in(folder.file(name), std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
+TEST(Development, finite_radiance_is_not_lost_to_infinity) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  DevelopLook look;
+  look.ev = 10;
+  const auto shown = [&](Rgb display, Rgb physical, double white) {
+    return developed_run({display}, {physical}, look, white, *kernels().front());
   };
-  EXPECT_EQ(bytes("a.png"), bytes("b.png"));
+  // 2^10 (kMost - kMost): infinities would make no number of it.
+  EXPECT_EQ(shown({kMost, 0, 0}, {-kMost, 1, 0}, 1).exposed[0], (Rgb{0, 1024, 0}));
+  EXPECT_EQ(shown({kMost, kMost, kMost}, {}, 1).display[0], (Rgb{1, 1, 1}));
+  EXPECT_EQ(shown({}, {NAN, 1, 1}, 1).exposed[0], Rgb{});
+  EXPECT_EQ(shown({}, {kMost, 0, -kMost}, 1).exposed[0], (Rgb{kBrightest, 0, -kBrightest}));
 }
 
-TEST_F(PictureFile, unknown_endings_are_refused) {
-  for (const char* name : {"a", "a.gif", "a.png.txt", ".png", "a.jpeg2"})
-    EXPECT_NE(complaint([&] { write_picture(folder.file(name), ramp()); }).find("expected .png"),
-              std::string::npos)
-        << name;
-  EXPECT_NE(complaint([&] { write_picture(folder.file("a.jpg"), ramp(), 16); }), "");
-  EXPECT_TRUE(folder.names().empty());
-}
-
-TEST_F(PictureFile, failure_leaves_nothing_behind) {
-  EXPECT_THROW(write_picture(folder.file("missing/a.png"), ramp()), WorkError);
-  std::filesystem::create_directory(folder.file("taken.png"));
-  EXPECT_THROW(write_picture(folder.file("taken.png"), ramp()), WorkError);
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"taken.png"});
+TEST(Development, is_the_same_for_every_instruction_set) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> normal;
+  std::vector<Rgbx> display, physical;
+  for (int i = 0; i < 1003; ++i) {  // several segments and an odd rest
+    const float s = std::exp(3 * normal(random));
+    display.emplace_back(s * normal(random), s * normal(random), s * normal(random));
+    physical.emplace_back(s, s * (1 + normal(random)), s * (1 + normal(random)));
+  }
+  for (const DevelopLook& look : all_looks()) {
+    Image first;
+    for (const Kernel* kernel : kernels()) {
+      const Image image = developed_run(display, physical, look, 2.5, *kernel);
+      if (kernel == kernels().front()) first = image;
+      EXPECT_EQ(image.exposed, first.exposed) << kernel->isa;
+      EXPECT_EQ(image.display, first.display) << kernel->isa;
+      EXPECT_EQ(image.encoded, encode_srgb8(first.display)) << kernel->isa;
+    }
+  }
 }
 
 }  // namespace
