@@ -56,6 +56,7 @@ struct Lit {
 struct LinesView {
   const LineTable::Line* lines;
   std::size_t count;
+  bool mixed;                     ///< colours are amounts of three spectra; else filters before one
   double first_nm, per_nm, last;  ///< of the response: sample i stands at first_nm + i / per_nm, i up to last
   const std::array<double, 3>* response;
   TableView power;

@@ -92,15 +92,17 @@ void mixed_light(const postrender::TableView& table, const postrender::Lit& lit)
   }
 }
 
-/// What the sensor sees of lines. In double precision, because its curves are steep, and the purest colours
-/// are small differences in linear sRGB.
-inline Float4 shifted_lines(const postrender::LinesView& lines, double g, double power) {
+/// What the sensor sees of lines, by the amounts of the spectra that they belong to. In double precision,
+/// because its curves are steep, and the purest colours are small differences in linear sRGB.
+inline Float4 shifted_lines(const postrender::LinesView& lines, double g, double power,
+                            const float* amounts) {
   double seen[3] = {0, 0, 0};
   for (std::size_t k = 0; k < lines.count; ++k) {
     const double x = (lines.lines[k].wavelength_nm / g - lines.first_nm) * lines.per_nm;
     if (!(x >= 0 && x < lines.last)) continue;
     const auto low = static_cast<std::size_t>(x);
-    const double s = x - static_cast<double>(low), strength = lines.lines[k].strength;
+    const double s = x - static_cast<double>(low);
+    const double strength = lines.lines[k].strength * static_cast<double>(amounts[lines.lines[k].component]);
     const double *a = &lines.response[low][0], *b = a + 3;
     for (int c = 0; c < 3; ++c) seen[c] = seen[c] + strength * (a[c] + s * (b[c] - a[c]));
   }
@@ -109,16 +111,21 @@ inline Float4 shifted_lines(const postrender::LinesView& lines, double g, double
 }
 
 void light_of_lines(const postrender::LinesView& lines, const postrender::Lit& lit) {
+  constexpr Float4 kAll = {1, 1, 1, 1};
   Places at;
   for (std::size_t first = 0; first < lit.count; first += kRow) {
     const std::size_t count = lit.count - first < kRow ? lit.count - first : kRow;
     find_places(lines.power, lit, first, count, at);
     for (std::size_t i = 0; i < count; ++i) {
       if (at.weight[i] == 0) continue;
-      const Float4 power = color_at(lines.power.nodes[at.node[i]], at.s[i]);
+      const Float4 power = color_at(lines.power.nodes[at.node[i]], at.s[i]),
+                   color = load<Float4>(lit.colors + first + i), filter = lines.mixed ? kAll : color,
+                   amount = lines.mixed ? color : kAll;
+      float amounts[4];
+      store(amount, amounts);
       const Float4 seen =
-          shifted_lines(lines, static_cast<double>(lit.g[first + i]), static_cast<double>(power[0]));
-      add(lit.sum + first + i, at.weight[i] * (load<Float4>(lit.colors + first + i) * seen));
+          shifted_lines(lines, static_cast<double>(lit.g[first + i]), static_cast<double>(power[0]), amounts);
+      add(lit.sum + first + i, at.weight[i] * (filter * seen));
     }
   }
 }

@@ -33,11 +33,14 @@ std::vector<SpectralTable::Colors> luminances(double power) {
   return out;
 }
 
-std::shared_ptr<const LineTable> line_table(const SpectralDistribution& spectrum, const Effects& effects,
+/// The lines of one or three spectra; at rest they are part of the table.
+std::shared_ptr<const LineTable> line_table(const std::vector<AnySpectrum>& spectra, const Effects& effects,
                                             const Sensor& sensor, ShiftRange range) {
-  if (!effects.doppler || spectrum.lines().empty()) return nullptr;
   auto out = std::make_shared<LineTable>();
-  for (const SpectralLine& line : spectrum.lines()) out->lines.push_back({line.wavelength_nm, line.strength});
+  for (std::size_t i = 0; i < spectra.size() && effects.doppler; ++i)
+    for (const SpectralLine& line : spectra[i]->lines())
+      out->lines.push_back({line.wavelength_nm, line.strength, static_cast<int>(i)});
+  if (out->lines.empty()) return nullptr;
   out->first_nm = sensor.first_nm;
   out->step_nm = sensor.step_nm;
   for (const auto& sample : sensor.response) out->response.push_back(sensor.rgb(sample));
@@ -55,9 +58,8 @@ Light make(const SpectrumLook& look, const Effects& effects, const Sensor& senso
   if (look.kind == Kind::total_radiance) colors = luminances(power);
   for (const AnySpectrum& spectrum : look.spectra)
     colors.push_back(continuous_colors(spectrum, effects, sensor));
-  Light out{std::make_shared<SpectralTable>(colors, range), nullptr, look.physical};
-  if (look.kind == Kind::filtered) out.lines = line_table(*look.spectra[0], effects, sensor, range);
-  return out;
+  return {std::make_shared<SpectralTable>(colors, range), line_table(look.spectra, effects, sensor, range),
+          look.physical};
 }
 
 std::size_t bytes_of(const Light& light) { return light.table ? light.table->bytes() : 0; }

@@ -32,10 +32,8 @@ PixelFilter parse_pixel_filter(JsonObject in) {
   return filter;
 }
 
-Beaming parse_beaming(JsonObject& in, std::string_view key) {
+Beaming parse_beaming(JsonObject exponents) {
   Beaming out;
-  if (!in.has(key)) return out;
-  JsonObject exponents = in.object(key);
   out.spectral = exponents.number_or("spectral", out.spectral, -10, 10);
   out.integrated = exponents.number_or("integrated", out.integrated, -10, 10);
   exponents.finish();
@@ -46,8 +44,8 @@ Effects parse_effects(JsonObject in) {
   Effects out;
   out.doppler = in.boolean("doppler", true);
   out.searchlight = in.boolean("searchlight", true);
-  out.radiance = parse_beaming(in, "radiance_exponents");
-  out.irradiance = parse_beaming(in, "irradiance_exponents");
+  out.radiance = parse_beaming(in.object_or_empty("radiance_exponents"));
+  out.irradiance = parse_beaming(in.object_or_empty("irradiance_exponents"));
   in.finish();
   return out;
 }

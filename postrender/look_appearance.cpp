@@ -51,6 +51,10 @@ void parse_spectrum_in_time(JsonObject& outer, const LookSource& source, Appeara
   }
   // Step 2: whatever else changes, node by node.
   const Nodes nodes = at_nodes(entry, kSteps, {}, source.place, pointer);
+  if (nodes.values.size() == 1 && !out.spectrum_in_time.temperature_K) {
+    out.spectrum = parse_spectrum(outer.object("spectrum"), source);
+    return;
+  }
   std::vector<SpectrumLook> spectra;
   for (const json& value : nodes.values)
     spectra.push_back(parse_spectrum(JsonObject(value, source.place, pointer), source));

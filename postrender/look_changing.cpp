@@ -86,7 +86,9 @@ Number parse_number(JsonObject& in, std::string_view key, const LookSource& sour
 
 Number parse_number_or(JsonObject& in, std::string_view key, const LookSource& source, double fallback,
                        const Bounds& bounds) {
-  return in.has(key) ? parse_number(in, key, source, bounds) : Number{fallback};
+  if (in.has(key)) return parse_number(in, key, source, bounds);
+  in.note(key, fallback);
+  return Number{fallback};
 }
 
 std::vector<Number> parse_numbers(JsonObject& in, std::string_view key, const LookSource& source,

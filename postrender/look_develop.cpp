@@ -126,10 +126,14 @@ Output parse_output(JsonObject in) {
   Output out;
   std::vector<std::string> names;
   for (const auto& space : kOutputSpaces) names.emplace_back(space.first);
-  const std::string name = in.word("space", names, names.front());
+  const std::string name = in.word("space", names, "srgb");
   for (const auto& [known, space] : kOutputSpaces)
     if (known == name) out.space = space;
-  if (in.has("jpeg_quality")) out.jpeg_quality = static_cast<int>(in.integer("jpeg_quality", 1, 100));
+  if (in.has("jpeg_quality")) {
+    out.jpeg_quality = static_cast<int>(in.integer("jpeg_quality", 1, 100));
+  } else {
+    in.note("jpeg_quality", out.jpeg_quality);
+  }
   in.finish();
   return out;
 }
@@ -142,8 +146,12 @@ DevelopLook parse_develop(JsonObject& look, const LookSource& source) {
   parse_tone(look.object_or_empty("tone"), source, out);
   if (look.word("gamut", {"hue_preserving", "clip"}, "hue_preserving") == "clip")
     out.gamut = DevelopLook::Gamut::clip;
-  if (look.has("white_point")) out.white_point = parse_white_point(look);
-  if (look.has("output")) out.output = parse_output(look.object("output"));
+  if (look.has("white_point")) {
+    out.white_point = parse_white_point(look);
+  } else {
+    look.note("white_point", "D65");
+  }
+  out.output = parse_output(look.object_or_empty("output"));
   return out;
 }
 

@@ -181,8 +181,18 @@ SpectrumLook parse_spectrum(JsonObject in, const LookSource& source) {
   return out;
 }
 
+SpectrumLook three_materials(const SpectrumLook& materials, std::size_t first) {
+  SpectrumLook out{SpectrumLook::Kind::mixed, materials.physical, {}, materials.key + std::to_string(first)};
+  for (std::size_t i = first; i < first + 3; ++i)
+    out.spectra.push_back(i < materials.spectra.size() ? materials.spectra[i] : constant(0));
+  return out;
+}
+
 std::shared_ptr<const Sensor> parse_sensor(JsonObject& look, std::string_view key, const LookSource& source) {
-  if (!look.has(key)) return find_sensor("cie1931");
+  if (!look.has(key)) {
+    look.note(key, "cie1931");
+    return find_sensor("cie1931");
+  }
   if (look.is_text(key)) return find_sensor(look.word(key, kSensorNames));
   JsonObject in = look.object(key);
   const std::string path = parse_file(in, "file", source);

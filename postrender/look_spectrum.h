@@ -23,6 +23,9 @@ struct SpectrumLook {
   std::string key;                   ///< equal for equal spectra, files included
 };
 
+/// Three of the spectra of materials from `first` on, dark ones where there are no more.
+SpectrumLook three_materials(const SpectrumLook& materials, std::size_t first);
+
 /// Throws InputError; files are read.
 SpectrumLook parse_spectrum(JsonObject in, const LookSource& source);
 

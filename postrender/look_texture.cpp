@@ -97,8 +97,10 @@ MovingLook parse_sequence(JsonObject in, const ImageLook& image, const LookSourc
 }
 
 /// With the placement where it is a plain one; other ones are put around it.
-TextureLook parse_image(JsonObject& in, const LookSource& source, const std::optional<UvTransform>& plain) {
+TextureLook parse_image(JsonObject& in, const LookSource& source, const std::optional<UvTransform>& plain,
+                        bool materials) {
   ImageLook image;
+  if (materials) image.materials.first = 0;
   image.file = parse_file(in, "file", source);
   image.pointer = pointer_of(in, "file", source);
   image.uv = plain.value_or(UvTransform{});
@@ -106,6 +108,7 @@ TextureLook parse_image(JsonObject& in, const LookSource& source, const std::opt
   image.filter = filter == "mipmap"     ? Filter::mipmap
                  : filter == "bilinear" ? Filter::bilinear
                                         : Filter::anisotropic;
+  if (materials) return image;
   image.alpha = in.boolean("alpha", false);
   if (!in.has("sequence")) return image;
   if (in.text("file").find('#') == std::string::npos)
@@ -196,12 +199,30 @@ TextureLook placed(TextureLook texture, const Placement& placement) {
   return out;
 }
 
+/// The image itself, where there is one.
+ImageLook* image_of(TextureLook& texture) {
+  if (auto* image = std::get_if<ImageLook>(&texture)) return image;
+  auto* moving = std::get_if<MovingLook>(&texture);
+  return moving == nullptr ? nullptr : std::get_if<ImageLook>(&moving->frames.front());
+}
+
 }  // namespace
+
+bool is_of_materials(const TextureLook& texture) {
+  TextureLook copy = texture;
+  const ImageLook* image = image_of(copy);
+  return image != nullptr && image->materials.first >= 0;
+}
+
+TextureLook of_materials(TextureLook texture, MaterialGroup group) {
+  if (ImageLook* image = image_of(texture)) image->materials = group;
+  return texture;
+}
 
 TextureLook parse_texture(JsonObject& outer, const LookSource& source) {
   const json& entry = outer.at("texture");
   JsonObject in = outer.object("texture");
-  const std::string type = in.word("type", {"image", "checkerboard", "color"});
+  const std::string type = in.word("type", {"image", "checkerboard", "color", "materials"});
   const std::string pointer = pointer_of(outer, "texture", source);
   if (type == "color") {
     for (const char* key : kPlacementKeys)
@@ -215,7 +236,7 @@ TextureLook parse_texture(JsonObject& outer, const LookSource& source) {
     TextureLook board = parse_nodes(entry, source, pointer);
     return moved ? placed(std::move(board), placement) : board;
   }
-  TextureLook image = parse_image(in, source, plain);
+  TextureLook image = parse_image(in, source, plain, type == "materials");
   in.finish();
   return plain ? image : placed(std::move(image), placement);
 }

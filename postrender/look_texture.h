@@ -19,6 +19,7 @@ struct ImageLook {
   UvTransform uv;
   Filter filter = Filter::mipmap;
   bool alpha = false;  ///< the picture's alpha counts
+  MaterialGroup materials;
 };
 
 /// A MovingTexture whose images are yet to be read.
@@ -28,6 +29,11 @@ struct MovingLook {
   std::vector<std::variant<ColorTexture, CheckerboardTexture, ImageLook>> frames;
 };
 using TextureLook = std::variant<ColorTexture, CheckerboardTexture, ImageLook, MovingLook>;
+
+/// Whether it tells materials, not colours.
+bool is_of_materials(const TextureLook& texture);
+/// The same of three of `count` materials.
+TextureLook of_materials(TextureLook texture, MaterialGroup group);
 
 /// The texture under the key "texture".
 TextureLook parse_texture(JsonObject& in, const LookSource& source);

@@ -75,18 +75,6 @@ std::vector<ShiftRange> shift_ranges(const Dataset& dataset) {
   return out;
 }
 
-/// Opacity, intensity, blinking, temperature.
-void set_emission(Appearance& out, const AppearanceLook& look, const Number& opacity, Effects effects) {
-  out.opacity = opacity.keys ? 1.0f : static_cast<float>(opacity.constant);
-  if (opacity.keys) out.emission.opacity = opacity;
-  out.emission.intensity = look.intensity.value_or(Number{1});
-  out.emission.blink = look.blink;
-  if (look.spectrum_in_time.temperature_K)
-    out.emission.temperature = {*look.spectrum_in_time.temperature_K, look.spectrum_in_time.reference_K,
-                                effects};
-  out.changes = out.emission != Emission{};
-}
-
 }  // namespace
 
 std::shared_ptr<const Renderer::Source> Renderer::make_source(Dataset dataset) {
@@ -110,57 +98,6 @@ Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
       shifts_(source_->shifts),
       kernel_(kernel),
       textures_(std::move(textures)) {}
-
-std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
-                                     const Number& opacity, std::uint32_t id, const Look& look) {
-  const SpectrumLook spectrum = own.spectrum.value_or(SpectrumLook{});
-  // What radiates by itself needs no colour; what is shown as it is gets its flat one.
-  const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
-  Appearance out{textures.make(own.texture.value_or(ColorTexture{plain})), {}};
-  set_emission(out, own, opacity, look.effects);
-  const std::size_t first = shading.appearances.size();
-  const auto add = [&](const SpectrumLook& one) {
-    const std::string unknown = unknown_wavelengths(one, look.effects, *look.sensor, shifts_[id - 1]);
-    if (!unknown.empty()) shading.notes.push_back(manifest_.objects[id - 1].name + ": " + unknown);
-    const auto& changing = out.emission.temperature;
-    out.light = changing
-                    ? lights_.get(one, Effects{}, *look.sensor, reference_range(*changing, shifts_[id - 1]))
-                    : lights_.get(one, look.effects, *look.sensor, shifts_[id - 1]);
-    shading.appearances.push_back(out);
-  };
-  if (own.spectrum_in_time.nodes.empty()) {
-    add(spectrum);
-  } else {
-    std::ranges::for_each(own.spectrum_in_time.nodes, add);
-  }
-  return first;
-}
-
-Shading Renderer::prepare(const Look& look) {
-  check_channels(look, manifest_, dataset_.hits.channels, "dataset");
-  Shading shading{{}, {}, look.background, {}};
-  TextureMaker textures(*textures_);
-  for (std::uint32_t id = 1; id <= manifest_.objects.size(); ++id) {
-    const ObjectEntry& entry = manifest_.objects[id - 1];
-    const auto found = look.objects.find(entry.name);
-    const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
-    const auto add = [&](const AppearanceLook& appearance) {
-      return add_appearance(shading, textures, appearance, object.opacity, id, look);
-    };
-    const std::size_t usual = add(object.appearance);
-    std::vector<Slice> slices;
-    for (const TimeSliceLook& slice : object.time_slices) {
-      const AppearanceLook whole = inherited(slice.appearance, object.appearance);
-      slices.push_back(slice.when);
-      slices.back().appearance = add(whole);
-      slices.back().timeline = whole.spectrum_in_time.timeline;
-    }
-    shading.objects.push_back({entry.tau_origin, usual, SliceTable(std::move(slices)),
-                               object.appearance.spectrum_in_time.timeline});
-  }
-  textures.read_films(dataset_, shading);
-  return shading;
-}
 
 void Renderer::keep_radiance(const Shading& shading) {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);

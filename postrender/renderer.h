@@ -56,6 +56,9 @@ class Renderer {
 
   std::size_t add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
                              const Number& opacity, std::uint32_t id, const Look& look);
+  void add_materials(Appearance& out, TextureMaker& textures, const TextureLook& texture,
+                     const SpectrumLook& materials, std::uint32_t id, const Look& look);
+  Light light_of(const SpectrumLook& spectrum, const Emission& emission, std::uint32_t id, const Look& look);
 
   void keep_radiance(const Shading& shading);
   void keep_filtered(const Shading& shading, const PixelFilter& filter);

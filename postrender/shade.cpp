@@ -14,7 +14,7 @@ void add_light(const Kernel& kernel, const Light& light, const Lit& lit) {
   (table.stride == 1 ? kernel.filtered : kernel.mixed)(table, lit);
   if (!light.lines) return;
   const LineTable& lines = *light.lines;
-  kernel.lines({lines.lines.data(), lines.lines.size(), lines.first_nm, 1 / lines.step_nm,
+  kernel.lines({lines.lines.data(), lines.lines.size(), table.stride == 3, lines.first_nm, 1 / lines.step_nm,
                 static_cast<double>(lines.response.size() - 1), lines.response.data(), lines.power->view()},
                lit);
 }
@@ -175,7 +175,7 @@ void LineShader::find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::
                             std::size_t last) {
   const Appearance& appearance = shading_.appearances[pass.appearance[first]];
   for (std::size_t from = first; from < last; from += kSegment)
-    look_up(lines, appearance, from, std::min(kSegment, last - from), &pass.clear[from]);
+    look_up(lines, appearance.texture, from, std::min(kSegment, last - from), &pass.clear[from]);
   for (std::size_t i = first; i < last; ++i) {
     Rgbx& color = pass.clear[i];
     const float alpha = color.idle;
@@ -201,12 +201,12 @@ void LineShader::share_weights() {
 }
 
 /// The texture's colours of pixels [first, first + count) of the middle one of three lines, at most kSegment.
-void LineShader::look_up(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+void LineShader::look_up(const std::array<Layer, 3>& lines, const Texture& texture, std::size_t first,
                          std::size_t count, Rgbx* out) {
   const Layer& here = lines[1];
   const Footprints steps = {footprints_[0].data(), footprints_[1].data(), footprints_[2].data(),
                             footprints_[3].data()};
-  if (needs_footprint(appearance.texture)) {
+  if (needs_footprint(texture)) {
     if (layers_.recorded_steps()) {
       kernel_.recorded_footprints(here, first, count, steps);
     } else {
@@ -214,8 +214,7 @@ void LineShader::look_up(const std::array<Layer, 3>& lines, const Appearance& ap
     }
   }
   const Run run = {count, here.u + first, here.v + first, nullptr, nullptr, steps};
-  postrender::look_up(kernel_, appearance.texture, run, times_of(first, count), layers_.recorded_steps(),
-                      out);
+  postrender::look_up(kernel_, texture, run, times_of(first, count), layers_.recorded_steps(), out);
 }
 
 void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
@@ -223,7 +222,7 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pa
   const Layer& here = lines[1];
   const Appearance& appearance = shading_.appearances[pass.appearance[first]];
   const bool known = has_alpha(appearance.texture);
-  if (!known) look_up(lines, appearance, first, count, colors_.data());
+  if (!known) look_up(lines, appearance.texture, first, count, colors_.data());
   Lit lit = {count, here.shift + first, pass.weight.data() + first,
              known ? &pass.clear[first] : colors_.data(),
              (appearance.light.physical ? physical : display) + first};
@@ -239,6 +238,11 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pa
     lit.weight = light_.data();
   }
   add_light(kernel_, appearance.light, lit);
+  for (const Appearance::Component& component : appearance.more) {
+    look_up(lines, component.texture, first, count, colors_.data());
+    lit.colors = colors_.data();
+    add_light(kernel_, component.light, lit);
+  }
 }
 
 /// One coat of the crossings of one rank. Lines above and below are looked at for footprints only.

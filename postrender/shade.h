@@ -26,6 +26,13 @@ struct Appearance {
   float opacity = 1;       ///< times that of the crossing; 0: not seen at all
   Emission emission = {};  ///< what else changes with the time of emission; the opacity there counts too
   bool changes = false;    ///< whether `emission` says anything
+  /// What else radiates there, in the same place: further materials.
+  struct Component {
+    Texture texture;
+    Light light;
+    bool operator==(const Component&) const = default;
+  };
+  std::vector<Component> more = {};
 
   bool operator==(const Appearance&) const = default;
 };
@@ -74,7 +81,7 @@ class LineShader {
   void find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::size_t first, std::size_t last);
   void share_weights();
   Pass& pass_at(std::size_t number);
-  void look_up(const std::array<Layer, 3>& lines, const Appearance& appearance, std::size_t first,
+  void look_up(const std::array<Layer, 3>& lines, const Texture& texture, std::size_t first,
                std::size_t count, Rgbx* out);
   void shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
                      std::size_t count, Rgbx* display, Rgbx* physical);

@@ -41,7 +41,8 @@ double magnitude(const Color& c) { return std::max({std::abs(c[0]), std::abs(c[1
 Color bounded(Color c) {
   const double largest = magnitude(c);
   if (largest <= kBrightestEntry) return c;
-  if (!(largest < std::numeric_limits<double>::infinity())) return {kBrightestEntry, kBrightestEntry, kBrightestEntry};
+  if (!(largest < std::numeric_limits<double>::infinity()))
+    return {kBrightestEntry, kBrightestEntry, kBrightestEntry};
   for (double& x : c) x *= kBrightestEntry / largest;
   return c;
 }

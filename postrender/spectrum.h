@@ -87,6 +87,7 @@ inline constexpr double kBrightestEntry = 1e28;
 struct LineTable {
   struct Line {
     double wavelength_nm, strength;
+    int component = 0;  ///< of three spectra: whose it is
   };
   std::vector<Line> lines;
   double first_nm = 0, step_nm = 1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -82,6 +83,14 @@ enum class Filter {
   bilinear,    ///< in the full image
   mipmap,      ///< trilinear, over the footprint's longer side
   anisotropic  ///< over the ellipse that the footprint is
+};
+
+/// In place of colours: how much of three materials there is in a texel, `first` and the two after it, of
+/// `count` in all. A picture of materials tells the number of one (from 0) and how much of it.
+struct MaterialGroup {
+  int first = -1;  ///< -1: colours
+  int count = 0;
+  auto operator<=>(const MaterialGroup&) const = default;
 };
 
 struct ImageTexture {

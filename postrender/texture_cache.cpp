@@ -21,14 +21,15 @@ std::string stamp_of(const std::string& path) {
 }  // namespace
 
 std::shared_ptr<const Pyramid> TextureCache::get(const std::string& path, const std::string& pointer,
-                                                 bool alpha) {
+                                                 bool alpha, MaterialGroup materials) {
   const std::lock_guard lock(mutex_);
   const std::string stamp = stamp_of(path);
-  if (const auto found = entries_.find({path, alpha});
+  if (const auto found = entries_.find({path, alpha, materials});
       found != entries_.end() && found->second.stamp == stamp && !stamp.empty())
     return found->second.image;
-  auto image = std::make_shared<const Pyramid>(make_pyramid(read_texture(path, pointer, alpha)));
-  entries_[{path, alpha}] = {stamp, image};
+  auto image = std::make_shared<const Pyramid>(make_pyramid(
+      materials.first < 0 ? read_texture(path, pointer, alpha) : read_materials(path, pointer, materials)));
+  entries_[{path, alpha, materials}] = {stamp, image};
   return image;
 }
 

@@ -5,18 +5,19 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "postrender/texture.h"
 
 namespace nullcone::postrender {
 
-/// Keeps textures by path (with and without their alpha), and reads a file again when its time or size has
-/// changed. Any number of threads may use it.
+/// Keeps textures by path (with and without their alpha, by materials), and reads a file again when its time
+/// or size has changed. Any number of threads may use it.
 class TextureCache {
  public:
   /// Throws InputError as read_texture() does.
-  std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer, bool alpha);
+  std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer, bool alpha,
+                                     MaterialGroup materials = {});
 
   /// Forgets textures that nobody else holds, while they take more than `most_bytes` together.
   void prune(std::size_t most_bytes = std::size_t{1} << 30);
@@ -27,7 +28,7 @@ class TextureCache {
     std::shared_ptr<const Pyramid> image;
   };
   std::mutex mutex_;  ///< held while a texture is read: who waits, mostly waits for the same one
-  std::map<std::pair<std::string, bool>, Entry> entries_;
+  std::map<std::tuple<std::string, bool, MaterialGroup>, Entry> entries_;
 };
 
 }  // namespace nullcone::postrender

@@ -149,21 +149,55 @@ void check_png_end(const Place& place) {
   place.refuse("cannot be read whole: the PNG file is cut off");
 }
 
+/// A picture that is whole, as far as can be told before it is read.
+std::unique_ptr<ImageInput> open(const Place& place, ImageSpec& spec) {
+  const std::string format = format_of(place);
+  if (format == "jpeg") check_jpeg_end(place);
+  if (format == "png") check_png_end(place);
+  std::unique_ptr<ImageInput> in = ImageInput::create(format);
+  ImageSpec options;
+  options.attribute("oiio:UnassociatedAlpha", 1);  // colours stay as stored
+  if (!in) place.refuse("this build of OpenImageIO cannot read " + format);
+  if (!in->open(place.path, spec, options)) place.refuse("cannot be read: " + in->geterror());
+  check_size(spec, place);
+  return in;
+}
+
 }  // namespace
 
 TextureLevel read_texture(const std::string& path, const std::string& pointer, bool alpha) {
   const Place place{path, pointer};
-  const std::string format = format_of(place);
-  if (format == "jpeg") check_jpeg_end(place);
-  if (format == "png") check_png_end(place);
-  const std::unique_ptr<ImageInput> in = ImageInput::create(format);
-  ImageSpec spec, options;
-  options.attribute("oiio:UnassociatedAlpha", 1);  // colours stay as stored
-  if (!in) place.refuse("this build of OpenImageIO cannot read " + format);
-  if (!in->open(path, spec, options)) place.refuse("cannot be read: " + in->geterror());
-  check_size(spec, place);
+  ImageSpec spec;
+  const std::unique_ptr<ImageInput> in = open(place, spec);
   TextureLevel out{spec.width, spec.height, read_linear(*in, place)};
-  if (alpha) read_alpha(*in, place, format == "openexr", out);
+  if (alpha) read_alpha(*in, place, std::string_view(in->format_name()) == "openexr", out);
+  in->close();
+  return out;
+}
+
+TextureLevel read_materials(const std::string& path, const std::string& pointer, MaterialGroup group) {
+  const Place place{path, pointer};
+  ImageSpec spec;
+  const std::unique_ptr<ImageInput> in = open(place, spec);
+  if (spec.format.basetype != TypeDesc::UINT8)
+    place.refuse("expected 8 bits: red is the number of a material, green how much of it there is");
+  const int channels = spec.nchannels >= 3 ? 2 : 1;
+  TextureLevel out{spec.width, spec.height, {}};
+  out.texels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+  std::vector<std::uint8_t> raw(out.texels.size() * static_cast<std::size_t>(channels));
+  if (!in->read_image(0, 0, 0, channels, TypeDesc::UINT8, raw.data()) || in->has_error())
+    place.refuse("cannot be read whole: " + in->geterror());
+  for (std::size_t i = 0; i < out.texels.size(); ++i) {
+    const std::size_t at = i * static_cast<std::size_t>(channels);
+    const int material = raw[at], component = material - group.first;
+    if (material >= group.count)
+      place.refuse("names material " + std::to_string(material) + "; the spectrum has " +
+                   std::to_string(group.count) + ", numbered from 0");
+    const float amount = channels == 1 ? 1.0f : static_cast<float>(raw[at + 1]) / 255;
+    if (component == 0) out.texels[i].r = amount;
+    if (component == 1) out.texels[i].g = amount;
+    if (component == 2) out.texels[i].b = amount;
+  }
   in->close();
   return out;
 }

@@ -18,4 +18,9 @@ inline constexpr std::size_t kLargestTextureBytes = std::size_t{1} << 30;  ///< 
 /// larger than the limits above.
 TextureLevel read_texture(const std::string& path, const std::string& pointer, bool alpha = false);
 
+/// Reads an 8 bit picture of materials: red is the number of one (from 0), green how much of it there is (of
+/// 255; all of it in pictures without green). Numbers from `group.count` on are refused. Otherwise like
+/// read_texture().
+TextureLevel read_materials(const std::string& path, const std::string& pointer, MaterialGroup group);
+
 }  // namespace nullcone::postrender

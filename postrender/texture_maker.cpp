@@ -18,7 +18,7 @@ std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + 
 Texture TextureMaker::make(const TextureLook& look) {
   const auto still = [&](const ImageLook& image) {
     ImageTexture out = without_image(image);
-    out.image = cache_.get(image.file, image.pointer, image.alpha);
+    out.image = cache_.get(image.file, image.pointer, image.alpha, image.materials);
     return out;
   };
   if (const auto* color = std::get_if<ColorTexture>(&look)) return *color;

@@ -245,6 +245,93 @@ TEST(Spectrum, three_channels_are_mixed_by_the_texture) {
   }
 }
 
+TEST(Spectrum, lines_in_three_channels_go_by_their_amounts) {
+  const std::string channels = R"({"type":"channels","spectra":[{"type":"lines","lines":[[611,1]]},
+    {"type":"lines","lines":[[545,2],[600,1]]},{"type":"constant","radiance":0.001}]})";
+  for (const float g : {0.9f, 1.0f, 1.2f}) {
+    const Rgb found = seen(channels, {0.5f, 0.25f, 0}, g);
+    const Rgb expected = 0.5f * seen(R"({"type":"lines","lines":[[611,1]]})", {1, 1, 1}, g) +
+                         0.25f * seen(R"({"type":"lines","lines":[[545,2],[600,1]]})", {1, 1, 1}, g);
+    expect_color(found, expected, 2e-6f * std::max({std::abs(expected.r), expected.g, std::abs(expected.b)}));
+  }
+}
+
+/// A binary PPM would do, but textures are PNG, TIFF, ...: the smallest TIFF writer there is, 8 bits, rgb.
+std::string tiff(int width, int height, const std::string& rgb) {
+  std::string out("II*\0\x08\0\0\0", 8);
+  const auto number = [](unsigned x, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) text += static_cast<char>(x >> (8 * i) & 0xff);
+    return text;
+  };
+  const unsigned entries = 9, data = 8 + 2 + 12 * entries + 4 + 6;
+  const auto entry = [&](unsigned tag, unsigned type, unsigned count, unsigned value) {
+    out += number(tag, 2) + number(type, 2) + number(count, 4) + number(value, 4);
+  };
+  out += number(entries, 2);
+  entry(256, 3, 1, static_cast<unsigned>(width));
+  entry(257, 3, 1, static_cast<unsigned>(height));
+  entry(258, 3, 3, data - 6);
+  entry(259, 3, 1, 1);
+  entry(262, 3, 1, 2);
+  entry(273, 4, 1, data);
+  entry(277, 3, 1, 3);
+  entry(278, 3, 1, static_cast<unsigned>(height));
+  entry(279, 4, 1, static_cast<unsigned>(rgb.size()));
+  out += number(0, 4) + number(8, 2) + number(8, 2) + number(8, 2);
+  return out + rgb;
+}
+
+TEST(Materials, each_texel_shows_its_own_spectrum) {
+  // Five materials side by side, the last at half its amount: more than one group of three.
+  const TestFolder folder;
+  std::string texels;
+  for (int i = 0; i < 5; ++i)
+    texels += std::string{static_cast<char>(i), static_cast<char>(i == 4 ? 51 : 255), 0};
+  folder.write("materials.tif", tiff(5, 1, texels));
+  const std::array<std::string, 5> spectra = {
+      R"({"type":"black_body","temperature_K":3000})", R"({"type":"lines","lines":[[550,10000]]})",
+      R"({"type":"gaussian","centre_nm":600,"fwhm_nm":50,"radiance":100})",
+      R"({"type":"power_law","index":-2,"radiance":50})", R"({"type":"black_body","temperature_K":6000})"};
+  std::string list;
+  for (const std::string& one : spectra) list += (list.empty() ? "" : ",") + one;
+  const float g = 1.1f;
+  const Dataset data = make_dataset(5, 1, {{"earth"}}, [&](int column, int) {
+    TestHit hit;
+    hit.u = (static_cast<float>(column) + 0.5f) / 5;
+    hit.shift = g;
+    return std::vector{hit};
+  });
+  const std::string look =
+      R"({"objects":{"earth":{"texture":{"type":"materials","file":"materials.tif","filter":"bilinear"},
+    "spectrum":{"type":"materials","spectra":[)" +
+      list + R"(]}}},"exposure":{"white_cd_m2":1}})";
+  const Image image = picture(data, look, folder.path());
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Rgb expected = (i == 4 ? 0.2f : 1.0f) * seen(spectra[i], {1, 1, 1}, g);
+    const float largest = std::max({std::abs(expected.r), expected.g, std::abs(expected.b)});
+    expect_color(image.exposed[i], expected, 1e-3f * largest);  // half floats: 2^-11
+  }
+}
+
+TEST(Materials, wrong_ones_are_refused) {
+  const TestFolder folder;
+  folder.write("materials.tif", tiff(2, 1, std::string("\x02\xff\0\x01\xff\0", 6)));
+  const auto refused = [&](const std::string& earth) {
+    return complaint(
+        [&] { picture(flat_map(2, 1), R"({"objects":{"earth":{)" + earth + "}}}", folder.path()); });
+  };
+  const std::string
+      texture = R"("texture":{"type":"materials","file":"materials.tif"})",
+      two = R"("spectrum":{"type":"materials","spectra":[{"type":"constant"},{"type":"constant"}]})";
+  EXPECT_NE(refused(texture + "," + two).find("names material 2; the spectrum has 2"), std::string::npos);
+  EXPECT_NE(refused(texture).find("go together"), std::string::npos);
+  EXPECT_NE(refused(two).find("go together"), std::string::npos);
+  EXPECT_NE(
+      refused(R"("texture":{"type":"materials","file":"materials.tif","alpha":true},)" + two).find("alpha"),
+      std::string::npos);
+}
+
 TEST(Spectrum, total_radiance_is_grey_and_goes_with_the_fourth_power) {
   const std::string total = R"({"type":"total_radiance"})";
   const Rgb c{0.5f, 0.25f, 0.125f};

@@ -1,0 +1,112 @@
+// The first step of a picture: from a look to a shading.
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "postrender/color.h"
+#include "postrender/needed_channels.h"
+#include "postrender/renderer.h"
+#include "postrender/texture_maker.h"
+
+namespace nullcone::postrender {
+
+namespace {
+
+/// Opacity, intensity, blinking, temperature.
+void set_emission(Appearance& out, const AppearanceLook& look, const Number& opacity, Effects effects) {
+  out.opacity = opacity.keys ? 1.0f : static_cast<float>(opacity.constant);
+  if (opacity.keys) out.emission.opacity = opacity;
+  out.emission.intensity = look.intensity.value_or(Number{1});
+  out.emission.blink = look.blink;
+  if (look.spectrum_in_time.temperature_K)
+    out.emission.temperature = {*look.spectrum_in_time.temperature_K, look.spectrum_in_time.reference_K,
+                                effects};
+  out.changes = out.emission != Emission{};
+}
+
+}  // namespace
+
+/// The light of one spectrum as a look has it; where its temperature changes, that of the reference.
+Light Renderer::light_of(const SpectrumLook& spectrum, const Emission& emission, std::uint32_t id,
+                         const Look& look) {
+  const ShiftRange shifts = shifts_[id - 1];
+  if (emission.temperature)
+    return lights_.get(spectrum, Effects{}, *look.sensor, reference_range(*emission.temperature, shifts));
+  return lights_.get(spectrum, look.effects, *look.sensor, shifts);
+}
+
+/// A texture of materials shows three at a time.
+void Renderer::add_materials(Appearance& out, TextureMaker& textures, const TextureLook& texture,
+                             const SpectrumLook& materials, std::uint32_t id, const Look& look) {
+  const std::size_t count = materials.spectra.size();
+  for (std::size_t first = 0; first < count; first += 3) {
+    const MaterialGroup group{static_cast<int>(first), static_cast<int>(count)};
+    Appearance::Component one{textures.make(of_materials(texture, group)),
+                              light_of(three_materials(materials, first), out.emission, id, look)};
+    if (first > 0) {
+      out.more.push_back(std::move(one));
+    } else {
+      out.texture = std::move(one.texture);
+      out.light = std::move(one.light);
+    }
+  }
+}
+
+std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
+                                     const Number& opacity, std::uint32_t id, const Look& look) {
+  const std::string& name = manifest_.objects[id - 1].name;
+  const SpectrumLook spectrum = own.spectrum.value_or(SpectrumLook{});
+  // What radiates by itself needs no colour; what is shown as it is gets its flat one.
+  const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
+  const TextureLook texture = own.texture.value_or(ColorTexture{plain});
+  const bool materials = is_of_materials(texture);
+  if (materials != (spectrum.kind == SpectrumLook::Kind::materials))
+    throw InputError("/objects/" + name, "a texture and a spectrum of type materials go together");
+  Appearance out{materials ? ColorTexture{} : textures.make(texture), {}};
+  set_emission(out, own, opacity, look.effects);
+  const std::size_t first = shading.appearances.size();
+  const auto add = [&](const SpectrumLook& one) {
+    const std::string unknown = unknown_wavelengths(one, look.effects, *look.sensor, shifts_[id - 1]);
+    if (!unknown.empty()) shading.notes.push_back("/objects/" + name + "/spectrum: " + unknown);
+    if (materials) {
+      out.more.clear();
+      add_materials(out, textures, texture, one, id, look);
+    } else {
+      out.light = light_of(one, out.emission, id, look);
+    }
+    shading.appearances.push_back(out);
+  };
+  if (own.spectrum_in_time.nodes.empty()) {
+    add(spectrum);
+  } else {
+    std::ranges::for_each(own.spectrum_in_time.nodes, add);
+  }
+  return first;
+}
+
+Shading Renderer::prepare(const Look& look) {
+  check_channels(look, manifest_, dataset_.hits.channels, "dataset");
+  Shading shading{{}, {}, look.background, {}};
+  TextureMaker textures(*textures_);
+  for (std::uint32_t id = 1; id <= manifest_.objects.size(); ++id) {
+    const ObjectEntry& entry = manifest_.objects[id - 1];
+    const auto found = look.objects.find(entry.name);
+    const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
+    const auto add = [&](const AppearanceLook& appearance) {
+      return add_appearance(shading, textures, appearance, object.opacity, id, look);
+    };
+    const std::size_t usual = add(object.appearance);
+    std::vector<Slice> slices;
+    for (const TimeSliceLook& slice : object.time_slices) {
+      const AppearanceLook whole = inherited(slice.appearance, object.appearance);
+      slices.push_back(slice.when);
+      slices.back().appearance = add(whole);
+      slices.back().timeline = whole.spectrum_in_time.timeline;
+    }
+    shading.objects.push_back({entry.tau_origin, usual, SliceTable(std::move(slices)),
+                               object.appearance.spectrum_in_time.timeline});
+  }
+  textures.read_films(dataset_, shading);
+  return shading;
+}
+
+}  // namespace nullcone::postrender
