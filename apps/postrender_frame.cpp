@@ -109,6 +109,8 @@ int render_picture(const PostrenderOptions& options) {
   PictureMaker maker(files.picture, options.bits);
   const pr::Image& image = maker.make(renderer, looks);
   seconds.render = watch.lap();
+  if (!options.common.quiet)
+    for (const std::string& note : renderer.notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
   pr::write_picture(files.picture, image, options.bits);
   seconds.write = watch.lap();
   if (options.json)

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "apps/postrender_frame.h"
@@ -150,12 +152,23 @@ class Sequence {
     if (!shared)
       own.emplace(read_dataset(files.data, needed_channels(plan.looks, plan.manifest), false),
                   *pr::kernels().front(), textures_);
-    const pr::Image& image = maker.make(shared ? *shared : *own, plan.looks);
+    pr::Renderer& renderer = shared ? *shared : *own;
+    const pr::Image& image = maker.make(renderer, plan.looks);
+    tell(renderer.notes());
     pr::write_picture(files.picture, image, options_.bits, plan.fingerprint);
     progress_.rendered(files, image, watch.lap());
   }
 
+  /// Each note once.
+  void tell(const std::vector<std::string>& notes) {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& note : notes)
+      if (told_.insert(note).second && !options_.common.quiet)
+        std::fprintf(stderr, "note: %s\n", note.c_str());
+  }
+
   const PostrenderOptions& options_;
+  std::set<std::string> told_;
   std::vector<pr::FrameFiles> files_;
   std::optional<Manifest> manifest_;  ///< where all frames have the same
   std::shared_ptr<pr::TextureCache> textures_ = std::make_shared<pr::TextureCache>();

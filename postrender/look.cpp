@@ -56,6 +56,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
   JsonObject in(document, source.place, source.pointer, source.survey);
   Look look;
   look.objects = parse_objects(in.object_or_empty("objects"), source, manifest);
+  look.lights = parse_lamps(in.object_or_empty("lights"), source, manifest.lights);
   look.effects = parse_effects(in.object_or_empty("effects"));
   look.sensor = parse_sensor(in, "sensor", source);
   look.pixel_filter = parse_pixel_filter(in.object_or_empty("pixel_filter"));

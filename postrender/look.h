@@ -9,6 +9,7 @@
 #include "postrender/look_appearance.h"
 #include "postrender/look_develop.h"
 #include "postrender/look_legend.h"
+#include "postrender/look_light.h"
 #include "postrender/pixel_filter.h"
 #include "postrender/spectrum.h"
 
@@ -16,6 +17,7 @@ namespace nullcone::postrender {
 
 struct Look {
   std::map<std::string, ObjectLook> objects;
+  std::map<std::string, LampLook> lights;
   Effects effects;
   std::shared_ptr<const Sensor> sensor = find_sensor("cie1931");
   PixelFilter pixel_filter;

@@ -20,18 +20,6 @@ Clock parse_clock(JsonObject& in, std::string_view key) {
   return in.word(key, {"t", "tau"}) == "tau" ? Clock::tau : Clock::t;
 }
 
-Blink parse_blink(JsonObject in, const LookSource& source) {
-  Blink out;
-  out.clock = parse_clock(in, "channel");
-  out.period = in.positive("period");
-  out.duty = parse_number_or(in, "duty", source, 0.5, {0, 1});
-  out.phase = parse_number_or(in, "phase", source, 0, {-1e9, 1e9});
-  out.fade = in.number_or("fade", 0, 0);
-  out.transparent = in.word("off", {"black", "transparent"}, "black") == "transparent";
-  in.finish();
-  return out;
-}
-
 /// Between the keys' extremes, as a factor.
 double middle(const Keyframes& keys) {
   const auto [least, most] = std::ranges::minmax(keys.values);
@@ -122,6 +110,18 @@ AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) 
   }
   if (!own.intensity) out.intensity = from.intensity;
   if (!own.blink) out.blink = from.blink;
+  return out;
+}
+
+Blink parse_blink(JsonObject in, const LookSource& source) {
+  Blink out;
+  out.clock = parse_clock(in, "channel");
+  out.period = in.positive("period");
+  out.duty = parse_number_or(in, "duty", source, 0.5, {0, 1});
+  out.phase = parse_number_or(in, "phase", source, 0, {-1e9, 1e9});
+  out.fade = in.number_or("fade", 0, 0);
+  out.transparent = in.word("off", {"black", "transparent"}, "black") == "transparent";
+  in.finish();
   return out;
 }
 

@@ -47,6 +47,9 @@ struct ObjectLook {
 /// The appearance `own`, which inherits what it leaves out.
 AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from);
 
+/// A lamp that goes on and off.
+Blink parse_blink(JsonObject in, const LookSource& source);
+
 ObjectLook parse_object(JsonObject in, const LookSource& source);
 
 }  // namespace nullcone::postrender

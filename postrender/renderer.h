@@ -42,6 +42,9 @@ class Renderer {
   /// The same for viewers: only the parts that are asked for, in the memory that `image` already has.
   void render(const Look& look, const ImageParts& parts, Image& image);
 
+  /// What users should know of the last picture, as spectra that are not known where they are seen.
+  std::vector<std::string> notes() const { return shaded_ ? shaded_->notes : std::vector<std::string>{}; }
+
  private:
   /// What siblings share; it never changes.
   struct Source {

@@ -114,6 +114,27 @@ TEST(Looks, unknown_objects_are_told_which_there_are) {
   EXPECT_NE(found.find("earth, moon"), std::string::npos) << found;
 }
 
+TEST(Looks, lamps_are_those_of_the_dataset) {
+  Manifest manifest = two_objects();
+  const std::string look =
+      R"({"lights":{"sun":{"intensity":2.5,"spectrum":{"type":"black_body","temperature_K":5762},
+    "blink":{"channel":"tau","period":3},"paths":[0,2]}}})";
+  const std::string none = complaint([&] { look_of(look, manifest); });
+  EXPECT_NE(none.find("/lights/sun: the dataset has no lamps"), std::string::npos) << none;
+  manifest.lights = {"sun"};
+  const LampLook sun = look_of(look, manifest).lights.at("sun");
+  EXPECT_EQ(sun.intensity, Number{2.5});
+  EXPECT_TRUE(sun.blink);
+  EXPECT_EQ(sun.paths, (std::set<int>{0, 2}));
+  for (const auto& [wrong, words] : {std::pair{R"({"lights":{"moon":{}}})", "no such lamp"},
+                                     {R"({"lights":{"sun":{"paths":[-1]}}})", "/paths/0"},
+                                     {R"({"lights":{"sun":{"spectrum":{"type":"rgb"}}}})", "/spectrum/type"},
+                                     {R"({"lights":{"sun":{"intensity":-1}}})", "/intensity"}}) {
+    const std::string found = complaint([&] { look_of(wrong, manifest); });
+    EXPECT_NE(found.find(words), std::string::npos) << wrong << ": " << found;
+  }
+}
+
 TEST(Looks, empty_look_is_the_default) {
   const Look look = look_of("{}", two_objects());
   EXPECT_EQ(look.effects, (Effects{true, true, {}, {}}));

@@ -52,7 +52,7 @@ def run(command):
 
 def light(command, space):
     """What the command's picture shows, before exposure."""
-    words = [word for word in shlex.split(command)]
+    words = shlex.split(command)
     words[words.index("-o") + 1] = "light.exr"
     run(shlex.join(words + ["--set", "exposure.ev=0", "--set", "exposure.white_cd_m2=1", "--set", "output.space=" + space]))
     return pixels("light.exr")
@@ -169,40 +169,50 @@ def printed(text, found, what):
     checks.true(abs(float(text) - found) < 1.02 * half, f"docs/searchlight.md, {what}: {text}, found {found:.7g}")
 
 
+def told(text):
+    checks.true(text in page.replace("\n", " ").replace("  ", " "), f"docs/searchlight.md does not say '{text}'")
+
+
 def coordinates(text):
     return tuple(int(number) for number in text.split(","))
+
+
+def compare_moving(label, street, x, y, geometry, wrong, right):
+    """One pixel in figures 5 to 7; returns the square that it shows."""
+    beta = np.array(street["observer"]["velocity"])
+    squares, texture = seen(street, x, y)
+    checks.same(len(squares), 1, f"{label}: squares in the pixel")
+    close(geometry[y, x], texture, TEXTURE, f"{label}: geometry only")
+    for name, picture, power in (("wrong", wrong, 1), ("right", right, 4)):
+        close(picture[y, x], seen(street, x, y, power)[1], POWERS, f"{label}: {name}")
+        mean = np.mean([shift(m, beta) ** power for m in directions(street["camera"], x, y)])
+        close(picture[y, x] / geometry[y, x], mean, POWERS, f"{label}: {name}/geometry")
+    return squares.pop()
 
 
 def compare_street(pictures):
     """Figures 4 to 7: every row of the page's table."""
     still, street = scene("street_at_rest.json"), scene("street.json")
-    beta = np.array(street["observer"]["velocity"])
-    rest, geometry, wrong, right = (light(command, "linear_rec709") for command in pictures)
-    for label, pixel, still_pixel, what, *numbers in table("place"):
+    beta, ahead = np.array(street["observer"]["velocity"]), {}
+    rest, *moving = (light(command, "linear_rec709") for command in pictures)
+    for label, pixel, still_pixel, what, g, at_rest_told, *numbers in table("place"):
         x, y = coordinates(pixel)
-        squares, texture = seen(street, x, y)
-        checks.same(len(squares), 1, f"{label}: squares in the pixel")
-        checks.true(next(iter(squares))[0] in what, f"{label}: shows {squares}")
-        close(geometry[y, x], texture, TEXTURE, f"{label}: geometry only")
-        for name, picture, power in (("wrong", wrong, 1), ("right", right, 4)):
-            close(picture[y, x], seen(street, x, y, power)[1], POWERS, f"{label}: {name}")
-            mean = np.mean([shift(m, beta) ** power for m in directions(street["camera"], x, y)])
-            close(picture[y, x] / geometry[y, x], mean, POWERS, f"{label}: {name}/geometry")
-        found = [np.mean([shift(m, beta) for m in directions(street["camera"], x, y)]), None,
-                 *(picture[y, x, 1] for picture in (geometry, wrong, right)),
-                 right[y, x, 1] / geometry[y, x, 1]]
+        square = compare_moving(label, street, x, y, *moving)
+        checks.true(f"`{square[0]}`" in what, f"{label}: shows {square}")
+        rays = list(directions(street["camera"], x, y))
+        ahead[label] = math.degrees(math.acos(at_rest(rays[0], beta)[0]))
+        printed(g, np.mean([shift(m, beta) for m in rays]), label)
+        values = [picture[y, x, 1] for picture in moving]
+        for text, number in zip(numbers, [*values, values[2] / values[0]], strict=True):
+            printed(text, number, label)
         if still_pixel == "–":
-            checks.same(numbers[1], "–", f"{label}: at rest")
-        else:
-            at = coordinates(still_pixel)
-            squares_at_rest, texture = seen(still, *at)
-            checks.same(squares_at_rest, squares, f"{label}: the square at rest")
-            found[1] = rest[at[1], at[0], 1]
-            close(found[1], texture, TEXTURE, f"{label}: at rest")
-        for text, number in zip(numbers, found, strict=True):
-            if number is not None:
-                printed(text, number, f"{label}")
-    checks.true(all(float(right[y, x, 1]) > 2 * geometry[y, x, 1] for y, x in ((30, 5), (590, 950))), "the searchlight brightens all of the street")
+            continue
+        x, y = coordinates(still_pixel)
+        squares, texture = seen(still, x, y)
+        checks.same(squares, {square}, f"{label}: the square at rest")
+        close(rest[y, x], texture, TEXTURE, f"{label}: at rest")
+        printed(at_rest_told, rest[y, x, 1], label)
+    told(f"F and G are seen {ahead['F']:.0f}° and {ahead['G']:.0f}° from straight ahead")
 
 
 def compare_sun(pictures):
@@ -211,7 +221,7 @@ def compare_sun(pictures):
     away = -np.array(flyby["objects"][0]["placing"]["worldline"]["velocity"])  # of the observer, past the sun
     T = flyby["look"]["objects"]["sun"]["spectrum"]["temperature_K"]
     doppler, both = (light(command, "xyz") for command in pictures)
-    observer = observer_1931()
+    observer, luminance = observer_1931(), {}
     for label, pixel, *numbers in table("part"):
         x, y = coordinates(pixel)
         g = [shift(m, away) for m in directions(flyby["camera"], x, y)]
@@ -225,7 +235,11 @@ def compare_sun(pictures):
         close(doppler[y, x] / both[y, x], np.mean(g) ** -5, PLANCK, f"{label}: Doppler only / both")
         found = [np.mean(g), np.mean(g) * T, doppler[y, x, 1] / 1e9, both[y, x, 1] / 1e9, *(both[y, x, :2] / both[y, x].sum())]
         for text, number in zip(numbers, found, strict=True):
-            printed(text, number, f"{label}")
+            printed(text, number, label)
+        luminance[label] = both[y, x, 1]
+    told(f"{luminance['R'] / luminance['W']:.1f} times as bright as the receding one (R and W)")
+    still = black_body(T, observer)
+    told(f"At rest the sun would have {still[1] / 1e9:.4f} · 10⁹ cd/m², x = {still[0] / still.sum():.4f}, y = {still[1] / still.sum():.4f}")
 
 
 def compare_settings(pictures):
@@ -248,7 +262,8 @@ def compare_look():
     series = scene("looks/street_radiance.json")["objects"]
     for name in ("street.json", "street_at_rest.json"):
         own = scene(name)["look"]["objects"]
-        checks.same({key: entry["texture"] for key, entry in series.items()}, {key: entry["texture"] for key, entry in own.items()}, f"textures of {name}")
+        textures = [{key: entry["texture"] for key, entry in objects.items()} for objects in (series, own)]
+        checks.same(*textures, f"textures of {name}")
     checks.same({entry["spectrum"]["type"] for entry in series.values()}, {"total_radiance"}, "spectra of the street")
 
 
@@ -257,7 +272,7 @@ os.mkdir("docs")
 for command in commands():
     run(command)
 made = [command for command in commands() if command.startswith("nullcone-postrender")]
-checks.same(len(made), 6, "pictures of the series")
+checks.same((len(made), len(table("place")), len(table("part"))), (6, 8, 6), "pictures of the series, and marked pixels")
 compare_look()
 compare_settings(made[:4])
 compare_settings(made[4:])

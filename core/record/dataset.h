@@ -35,6 +35,7 @@ struct Manifest {
   std::string
       setting;  ///< JSON: metric_parameters, camera, observation, paths, as they were with all defaults
   std::vector<ObjectEntry> objects;
+  std::vector<std::string> lights = {};  ///< lamps whose light is recorded, by name
   std::string version, isa, host;
   double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
   std::string hits_sha256, rays_sha256;  ///< see PayloadHash
