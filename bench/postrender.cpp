@@ -44,7 +44,7 @@ Dataset world(bool turned) {
 }
 
 /// A texture of 2048 x 1024, or another kind by its name, on a black body or as it is.
-Look look_of(const std::string& texture, bool black_body, const Manifest& manifest) {
+nlohmann::json look_document(const std::string& texture, bool black_body) {
   nlohmann::json earth = nlohmann::json::object();
   if (texture == "checkerboard")
     earth["texture"] = {{"type", texture}, {"counts", {36, 18}}, {"colors", {{1, 1, 1}, {0, 0, 0.5}}}};
@@ -52,29 +52,39 @@ Look look_of(const std::string& texture, bool black_body, const Manifest& manife
     earth["texture"] = {
         {"type", "image"}, {"file", "/usr/share/xplanet/images/earth.jpg"}, {"filter", texture}};
   if (black_body) earth["spectrum"] = {{"type", "black_body"}, {"temperature_K", 5762}};
-  const nlohmann::json look = {{"objects", {{"earth", earth}}},
-                               {"exposure", {{"white_cd_m2", 3e9}}},
-                               {"tone", {{"curve", "exponential"}, {"k", 1}}}};
-  return parse_look(look, {"bench", "", ""}, manifest);
+  return {{"objects", {{"earth", earth}}},
+          {"exposure", {{"white_cd_m2", 3e9}}},
+          {"tone", {{"curve", "exponential"}, {"k", 1}}}};
+}
+Look look_of(const std::string& texture, bool black_body, const Manifest& manifest) {
+  return parse_look(look_document(texture, black_body), {"bench", "", ""}, manifest);
 }
 
 void count_pixels(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPixels));
 }
 
-/// Whole frames on the number of threads of the argument; the shading changes every time, as when a
-/// temperature is dragged.
-void frames(benchmark::State& state, const std::string& texture, bool black_body, bool turned,
+/// What changes from one frame to the next.
+enum class Change { everything, temperature };
+
+/// Whole frames on the number of threads of the argument.
+void frames(benchmark::State& state, const std::string& texture, Change change, bool turned,
             ImageParts parts) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(0)));
   Renderer renderer(world(turned));
-  Look look = look_of(texture, black_body, renderer.dataset().manifest);
+  nlohmann::json document = look_document(texture, true);
+  std::vector<Look> looks;  // parsed before the clock runs: each frame another one
+  for (int i = 0; i < 64; ++i) {
+    if (change == Change::everything) document["objects"]["earth"]["texture"]["offset"] = {1e-3 * i, 0};
+    document["objects"]["earth"]["spectrum"]["temperature_K"] = 5700 + i;
+    looks.push_back(parse_look(document, {"bench", "", ""}, renderer.dataset().manifest));
+  }
   Image image;
-  renderer.render(look, parts, image);
+  for (int i = 0; i < 3; ++i) renderer.render(looks[static_cast<std::size_t>(i)], parts, image);
+  std::size_t frame = 0;
   for ([[maybe_unused]] auto _ : state) {
-    look.background.r += 1e-6f;
-    renderer.render(look, parts, image);
+    renderer.render(looks[frame++ % looks.size()], parts, image);
     benchmark::ClobberMemory();
   }
   count_pixels(state);
@@ -89,11 +99,13 @@ constexpr ImageParts kAll{};
       ->MeasureProcessCPUTime()                \
       ->UseRealTime()                          \
       ->Unit(benchmark::kMillisecond)
-NULLCONE_FRAMES(black_body_mipmap, "mipmap", true, false, kLinear);
-NULLCONE_FRAMES(black_body_mipmap_turned, "mipmap", true, true, kLinear);
-NULLCONE_FRAMES(black_body_mipmap_encoded, "mipmap", true, false, kEncoded);
-NULLCONE_FRAMES(black_body_mipmap_all_parts, "mipmap", true, false, kAll);
-NULLCONE_FRAMES(black_body_bilinear, "bilinear", true, false, kLinear);
+NULLCONE_FRAMES(black_body_mipmap, "mipmap", Change::everything, false, kLinear);
+NULLCONE_FRAMES(black_body_mipmap_turned, "mipmap", Change::everything, true, kLinear);
+NULLCONE_FRAMES(black_body_mipmap_encoded, "mipmap", Change::everything, false, kEncoded);
+NULLCONE_FRAMES(black_body_mipmap_all_parts, "mipmap", Change::everything, false, kAll);
+NULLCONE_FRAMES(black_body_bilinear, "bilinear", Change::everything, false, kLinear);
+NULLCONE_FRAMES(temperature, "mipmap", Change::temperature, false, kLinear);
+NULLCONE_FRAMES(temperature_encoded, "mipmap", Change::temperature, false, kEncoded);
 
 /// Frames of which only the exposure changes.
 void development(benchmark::State& state) {
@@ -144,12 +156,13 @@ void develop(benchmark::State& state, const Kernel* kernel, const ImageParts& pa
   });
 }
 
-/// The yardstick: the bytes of a linear picture.
+/// The yardstick: the bytes of the records (eleven channels of four bytes a crossing) and of a linear
+/// picture, from one place of the memory to another.
 void copy(benchmark::State& state) {
-  const std::vector<Rgb> from(kPixels, Rgb{1, 1, 1});
-  std::vector<Rgb> to(kPixels);
+  const std::vector<float> from(kPixels * (11 + 3), 1.0f);
+  std::vector<float> to(from.size());
   for ([[maybe_unused]] auto _ : state) {
-    std::memcpy(to.data(), from.data(), kPixels * sizeof(Rgb));
+    std::memcpy(to.data(), from.data(), from.size() * sizeof(float));
     benchmark::ClobberMemory();
   }
   count_pixels(state);

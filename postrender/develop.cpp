@@ -45,7 +45,8 @@ void set_size(Image& image, int width, int height, const ImageParts& parts) {
 void LineDeveloper::develop(const Rgbx* display, const Rgbx* physical, std::size_t first, std::size_t count,
                             Image& image) {
   for (std::size_t done = 0; done < count; done += kSegment)
-    develop_segment(display + done, physical == nullptr ? nullptr : physical + done, first + done,
+    develop_segment(display == nullptr ? nullptr : display + done,
+                    physical == nullptr ? nullptr : physical + done, first + done,
                     std::min(kSegment, count - done), image);
 }
 
@@ -55,7 +56,11 @@ void LineDeveloper::develop_segment(const Rgbx* display, const Rgbx* physical, s
   const double gain = std::exp2(look_.ev);
   const Exposure exposure = {as_gain(gain), as_gain(gain / image.white_cd_m2),
                              matrix_ ? matrix_->data() : nullptr};
-  kernel_.expose(display, physical, exposure, count, planes);
+  if (display == nullptr) {
+    kernel_.expose(physical, nullptr, {exposure.physical_gain, 0, exposure.matrix}, count, planes);
+  } else {
+    kernel_.expose(display, physical, exposure, count, planes);
+  }
   if (!image.exposed.empty()) kernel_.interleave(planes, count, image.exposed.data() + first);
   if (image.display.empty() && image.encoded.empty()) return;
   apply_curve(count, planes);

@@ -1,5 +1,6 @@
 #include "postrender/layers.h"
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 
@@ -43,7 +44,13 @@ std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset) {
     const std::uint64_t* offset = dataset.hits.offset.data() + line * width;
     std::uint64_t difference = 0;
     for (std::size_t i = 0; i <= width; ++i) difference |= offset[i] - offset[0] - i;
-    out.push_back(difference == 0 ? 1 : 0);
+    if (difference != 0) {
+      out.push_back(0);
+      continue;
+    }
+    const float* opacity = dataset.hits.A.data() + offset[0];
+    const bool opaque = std::all_of(opacity, opacity + width, [](float A) { return A >= 1; });
+    out.push_back(opaque ? kOneOpaqueEach : 1);
   }
   return out;
 }

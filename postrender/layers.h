@@ -11,8 +11,10 @@
 
 namespace nullcone::postrender {
 
-/// For each scan line whether every pixel has exactly one crossing: then columns are read as they lie.
+/// For each scan line whether every pixel has exactly one crossing, 1: then columns are read as they lie; or
+/// one that is opaque, kOneOpaqueEach: then nothing is seen through it. Else 0.
 std::vector<std::uint8_t> lines_with_one_each(const Dataset& dataset);
+inline constexpr std::uint8_t kOneOpaqueEach = 2;
 
 /// Hands out scan lines of a dataset; holds the working memory of one thread. Where a channel is missing, the
 /// order is 0, the frequency ratio 1, and (u, v) = (0, 0).

@@ -152,19 +152,35 @@ void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
   });
 }
 
-void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const {
+void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
-  const std::size_t physical_width = has_physical(shading) ? width : 0;
+  const std::size_t physical_width = has_physical(shading) ? width : 0,
+                    display_width = physical_width == 0 || has_display(shading) ? width : 0;
+  const bool known = keeping_ == Keeping::known;
+  if (keeping_ == Keeping::wanted) colors_.resize(dataset_.pixels());
   for_each_row(manifest_.lines, [&] {
-    return [=, &image, shader = LineShader(dataset_, one_each_, shading, kernel_),
+    return [=, this, &image, shader = LineShader(dataset_, one_each_, shading, kernel_),
             developer = LineDeveloper(look, kernel_),
-            line = Radiance{std::vector<Rgbx>(width), std::vector<Rgbx>(physical_width)}](
+            line = Radiance{std::vector<Rgbx>(display_width), std::vector<Rgbx>(physical_width)}](
                std::size_t row) mutable {
-      Rgbx* physical = line.physical.empty() ? nullptr : line.physical.data();
-      shader.shade(row, line.display.data(), physical);
-      developer.develop(line.display.data(), physical, row * width, width, image);
+      Rgbx *physical = line.physical.empty() ? nullptr : line.physical.data(),
+           *display = line.display.empty() ? nullptr : line.display.data();
+      KeptColors kept;
+      if (keeping_ != Keeping::no && one_each_[row] != 0) kept = {colors_.data() + row * width, known};
+      shader.shade(row, display, physical, kept);
+      developer.develop(display, physical, row * width, width, image);
     };
   });
+  if (keeping_ == Keeping::wanted) keeping_ = Keeping::known;
+}
+
+/// Colours of textures are worth their memory from the second picture of the same textures on.
+void Renderer::decide_keeping(const Shading& shading) {
+  constexpr std::size_t kMostPixels = std::size_t{1} << 24;
+  const bool again = shaded_ && same_textures(*shaded_, shading) && keeps_colors(shading) &&
+                     dataset_.pixels() <= kMostPixels;
+  if (!again) keeping_ = Keeping::no;
+  if (again && keeping_ == Keeping::no) keeping_ = Keeping::wanted;
 }
 
 Image Renderer::render(const Look& look) {
@@ -185,6 +201,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   const bool same = shaded_ == shading && filter_ == look.pixel_filter;
   const bool filtered = !is_identity(look.pixel_filter, manifest_.samples);
   if (!same) kept_ = false;
+  decide_keeping(shading);
   shaded_.reset();
   if (!kept_ && (same || !white_known || filtered)) {
     if (filtered) {

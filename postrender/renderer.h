@@ -66,7 +66,8 @@ class Renderer {
   void keep_radiance(const Shading& shading);
   void keep_filtered(const Shading& shading, const PixelFilter& filter);
   void develop_kept(const DevelopLook& look, Image& image) const;
-  void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image) const;
+  void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image);
+  void decide_keeping(const Shading& shading);
 
   std::shared_ptr<const Source> source_;
   const Manifest& manifest_;
@@ -80,6 +81,9 @@ class Renderer {
   PixelFilter filter_;             ///< of the last picture
   bool kept_ = false;              ///< whether radiance_ shows it
   Radiance radiance_;
+  /// Colours of textures, of first crossings.
+  enum class Keeping { no, wanted, known } keeping_ = Keeping::no;
+  std::vector<Rgbx> colors_;
 };
 
 }  // namespace nullcone::postrender

@@ -48,6 +48,24 @@ Clocks clocks_of(const Shading& shading) {
 
 }  // namespace
 
+bool keeps_colors(const Shading& shading) {
+  return !clocks_of(shading).any() && std::ranges::none_of(shading.objects, &ObjectShading::blends) &&
+         std::ranges::none_of(shading.appearances, [](const Appearance& appearance) {
+           return has_own_weight(appearance) || !appearance.more.empty();
+         });
+}
+
+bool same_textures(const Shading& a, const Shading& b) {
+  return a.objects == b.objects &&
+         std::ranges::equal(a.appearances, b.appearances, {}, &Appearance::texture, &Appearance::texture);
+}
+
+bool has_display(const Shading& shading) {
+  return shading.background != Rgb{} ||
+         std::ranges::any_of(shading.appearances,
+                             [](const Appearance& appearance) { return !appearance.light.physical; });
+}
+
 bool has_physical(const Shading& shading) {
   return std::ranges::any_of(shading.appearances,
                              [](const Appearance& appearance) { return appearance.light.physical; });
@@ -128,6 +146,7 @@ void LineShader::find_coats_of(const ObjectShading& object, std::size_t first, s
 bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer& here) {
   if (clocks_.any()) find_times(row, rank, here);
   used_ = 1;
+  bool hidden = false;
   std::vector<std::uint32_t>& appearances = passes_[0].appearance;
   if (layered_) std::ranges::fill(passes_[0].part, 1.0f);
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
@@ -139,8 +158,15 @@ bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer
     std::fill(appearances.begin() + static_cast<std::ptrdiff_t>(first),
               appearances.begin() + static_cast<std::ptrdiff_t>(last), static_cast<std::uint32_t>(usual));
     if (seen && !object->plain()) find_coats_of(*object, first, last);
+    hidden |= !seen;
   }
   Pass& pass = passes_[0];
+  if (!layered_ && one_each_[row] == kOneOpaqueEach && !hidden) {
+    if (!whole_weights_) std::ranges::fill(pass.weight, 1.0f);
+    whole_weights_ = true;
+    return false;
+  }
+  whole_weights_ = false;
   if (layered_) find_opacities(row, rank, here);
   const bool through = kernel_.weigh(layered_ ? opacity_.data() : here.opacity, width_, transmittance_.data(),
                                      pass.weight.data(), pass.appearance.data());
@@ -222,9 +248,10 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pa
   const Layer& here = lines[1];
   const Appearance& appearance = shading_.appearances[pass.appearance[first]];
   const bool known = has_alpha(appearance.texture);
-  if (!known) look_up(lines, appearance.texture, first, count, colors_.data());
-  Lit lit = {count, here.shift + first, pass.weight.data() + first,
-             known ? &pass.clear[first] : colors_.data(),
+  Rgbx* found = kept_.line != nullptr ? kept_.line + first : colors_.data();
+  if (!known && !kept_.known) look_up(lines, appearance.texture, first, count, found);
+  const Rgbx* colors = known ? &pass.clear[first] : found;
+  Lit lit = {count, here.shift + first, pass.weight.data() + first, colors,
              (appearance.light.physical ? physical : display) + first};
   if (appearance.changes && appearance.emission.temperature) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -253,7 +280,7 @@ void LineShader::shade_pass(const Pass& pass, std::size_t row, std::size_t rank,
   for (std::size_t first = 0, last = 0; first < width_; first = last) {
     last = end_of_run(pass.appearance, first);
     if (pass.appearance[first] == kUnseen) continue;
-    if (!ready && needs_footprint(shading_.appearances[pass.appearance[first]].texture)) {
+    if (!ready && !kept_.known && needs_footprint(shading_.appearances[pass.appearance[first]].texture)) {
       lines = layers_.around(row, rank, here);
       ready = true;
     }
@@ -262,7 +289,8 @@ void LineShader::shade_pass(const Pass& pass, std::size_t row, std::size_t rank,
   }
 }
 
-void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical) {
+void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept) {
+  kept_ = kept;
   for (Rgbx* sum : {display, physical})
     if (sum != nullptr) std::memset(static_cast<void*>(sum), 0, width_ * sizeof(Rgbx));
   std::ranges::fill(transmittance_, 1.0f);
@@ -272,7 +300,8 @@ void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical) {
     shines_through = find_appearances(row, rank, here);
     for (std::size_t k = 0; k < used_; ++k) shade_pass(passes_[k], row, rank, here, display, physical);
   }
-  if (shines_through) kernel_.background(transmittance_.data(), shading_.background, width_, display);
+  if (shines_through && display != nullptr)
+    kernel_.background(transmittance_.data(), shading_.background, width_, display);
 }
 
 }  // namespace nullcone::postrender

@@ -49,6 +49,19 @@ struct Shading {
 
 /// Whether any appearance radiates in cd/m^2.
 bool has_physical(const Shading& shading);
+/// Whether there are display colours, be it those of the background.
+bool has_display(const Shading& shading);
+/// Whether the colours of textures may be kept from one picture to the next: one crossing a pixel, which
+/// shows one texture at all times.
+bool keeps_colors(const Shading& shading);
+/// Whether two shadings (of one dataset) look up the same colours.
+bool same_textures(const Shading& a, const Shading& b);
+
+/// Colours of textures along a line, of its first crossings.
+struct KeptColors {
+  Rgbx* line = nullptr;  ///< null: they are not kept
+  bool known = false;    ///< false: they are yet to be looked up
+};
 
 /// Shades scan lines; holds the working memory of one thread. Crossings are composited front to back,
 /// L += transmittance * A * colour, until nothing shines through: one rank after the other, in it one coat
@@ -60,8 +73,9 @@ class LineShader {
   LineShader(const Dataset& dataset, std::span<const std::uint8_t> one_each, const Shading& shading,
              const Kernel& kernel);
 
-  /// Writes the line's pixels; `physical` may be null where nothing is.
-  void shade(std::size_t row, Rgbx* display, Rgbx* physical);
+  /// Writes the line's pixels; `physical` and `display` may be null where nothing is. Colours are kept only
+  /// of lines of one crossing a pixel, and where keeps_colors().
+  void shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept = {});
 
  private:
   /// One of the appearances that each pixel of a rank shows.
@@ -95,7 +109,9 @@ class LineShader {
   const Shading& shading_;
   const Kernel& kernel_;
   Layers layers_;
-  bool layered_;  ///< weights are more than transmittance times recorded opacity
+  KeptColors kept_;
+  bool whole_weights_ = false;  ///< the first pass has weights of 1
+  bool layered_;                ///< weights are more than transmittance times recorded opacity
   Clocks clocks_;
   std::size_t width_;
   std::vector<float> transmittance_;

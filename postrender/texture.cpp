@@ -81,7 +81,8 @@ Texel half_floats(Rgb c, float alpha) {
 }
 
 /// What sticks out over the image by more than a texel is never read.
-void append_tiles(const TextureLevel& level, int exponent, std::vector<Texel>& texels) {
+void append_tiles(const TextureLevel& level, int exponent,
+                  std::vector<Texel, HugePageAllocator<Texel>>& texels) {
   const float scale = std::ldexp(1.0f, exponent);
   for (int top = 0; top < level.height; top += kTile)
     for (int left = 0; left < level.width; left += kTile)

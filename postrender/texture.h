@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "postrender/huge_pages.h"
 #include "postrender/image.h"
 
 namespace nullcone::postrender {
@@ -48,8 +49,8 @@ struct LevelView {
 /// which is 1/20 of an 8 bit code; below 2^-29 of the largest component texels are 0.
 struct Pyramid {
   std::vector<LevelView> levels;
-  std::vector<Texel> texels;
-  float unit = 1;  ///< colour = unit * half float
+  std::vector<Texel, HugePageAllocator<Texel>> texels;  ///< looked up in no order
+  float unit = 1;                                       ///< colour = unit * half float
 
   std::size_t bytes() const { return texels.size() * sizeof(Texel); }
   /// For tests: a texel as look-ups see it.
