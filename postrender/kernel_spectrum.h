@@ -3,6 +3,7 @@
 
 #include "postrender/kernel.h"
 #include "postrender/lanes.h"
+#include "postrender/two_colors.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -64,15 +65,30 @@ inline Float4 color_at(const postrender::TableNode& node, float s) {
   return c0 + s * (c1 + s * (c2 + s * c3));
 }
 
+/// The same for two pixels side by side.
+inline TwoColors colors_at(const postrender::TableNode& a, const postrender::TableNode& b, float s, float t) {
+  const auto both = [&](std::size_t k) { return two_of(load<Float4>(&a.c[k]), load<Float4>(&b.c[k])); };
+  const TwoColors slope = both(1) + each_times(s, t, both(2) + each_times(s, t, both(3)));
+  return both(0) + each_times(s, t, slope);
+}
+
 /// The table's colour, filtered component by component.
 void filtered_light(const postrender::TableView& table, const postrender::Lit& lit) {
   Places at;
   for (std::size_t first = 0; first < lit.count; first += kRow) {
     const std::size_t count = lit.count - first < kRow ? lit.count - first : kRow;
     find_places(table, lit, first, count, at);
-    for (std::size_t i = 0; i < count; ++i)
-      add(lit.sum + first + i,
-          at.weight[i] * (load<Float4>(lit.colors + first + i) * color_at(table.nodes[at.node[i]], at.s[i])));
+    const postrender::Rgbx* colors = lit.colors + first;
+    postrender::Rgbx* sum = lit.sum + first;
+    std::size_t i = 0;
+    for (; i + 2 <= count; i += 2) {
+      const TwoColors seen =
+          colors_at(table.nodes[at.node[i]], table.nodes[at.node[i + 1]], at.s[i], at.s[i + 1]);
+      store_two(load_two(sum + i) + each_times(at.weight[i], at.weight[i + 1], load_two(colors + i) * seen),
+                sum + i);
+    }
+    if (i < count)
+      add(sum + i, at.weight[i] * (load<Float4>(colors + i) * color_at(table.nodes[at.node[i]], at.s[i])));
   }
 }
 

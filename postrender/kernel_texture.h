@@ -129,35 +129,60 @@ inline std::size_t end_of_level(const LookUps& at, std::size_t first, std::size_
   return last;
 }
 
-/// The look-ups of a block, level by level: neighbouring pixels nearly always share theirs.
-inline void image_block(const postrender::ImageView& image, const LookUps& at, std::size_t count,
-                        postrender::Rgbx* out) {
+/// The look-ups of a block with all that they need: the next block's texels are fetched while this one's are
+/// mixed.
+struct Block {
+  std::size_t count = 0;
+  LookUps at;
   Corners fine, coarse;
-  for (std::size_t first = 0, last = 0; first < count; first = last) {
-    const auto level = static_cast<std::int32_t>(at.level[first]);
-    last = end_of_level(at, first, count);
-    std::int32_t between = 0;
-    for (std::size_t i = first; i < last; ++i) between |= at.level[i] != static_cast<float>(level) ? 1 : 0;
-    find_corners(image.levels[level], at, first, last, fine);
-    fetch_early(image.texels, fine, first, last);
-    if (between == 0) {
-      for (std::size_t i = first; i < last; ++i) store(image.unit * bilinear(image.texels, fine, i), out + i);
-      continue;
+};
+
+/// Whether any of the look-ups lies between its level and the next.
+inline bool is_between(const LookUps& at, std::size_t first, std::size_t last) {
+  const auto level = static_cast<float>(static_cast<std::int32_t>(at.level[first]));
+  std::int32_t between = 0;
+  for (std::size_t i = first; i < last; ++i) between |= at.level[i] != level ? 1 : 0;
+  return between != 0;
+}
+
+/// Level by level: neighbouring pixels nearly always share theirs.
+inline void prepare(const postrender::ImageView& image, const postrender::Run& run, std::size_t from,
+                    Block& block) {
+  block.count = run.count - from < kBlock ? run.count - from : kBlock;
+  place(image, run, from, block.count, block.at);
+  find_levels(image, run, from, block.count, block.at);
+  for (std::size_t first = 0, last = 0; first < block.count; first = last) {
+    const auto level = static_cast<std::int32_t>(block.at.level[first]);
+    last = end_of_level(block.at, first, block.count);
+    find_corners(image.levels[level], block.at, first, last, block.fine);
+    if (is_between(block.at, first, last))
+      find_corners(image.levels[level + 1], block.at, first, last, block.coarse);
+    fetch_early(image.texels, block.fine, first, last);
+  }
+}
+
+inline void mix_texels(const postrender::ImageView& image, const Block& block, postrender::Rgbx* out) {
+  for (std::size_t first = 0, last = 0; first < block.count; first = last) {
+    const auto level = static_cast<float>(static_cast<std::int32_t>(block.at.level[first]));
+    last = end_of_level(block.at, first, block.count);
+    if (is_between(block.at, first, last)) {
+      for (std::size_t i = first; i < last; ++i)
+        store(image.unit * trilinear(image.texels, block.fine, block.coarse, i, block.at.level[i] - level),
+              out + i);
+    } else {
+      for (std::size_t i = first; i < last; ++i)
+        store(image.unit * bilinear(image.texels, block.fine, i), out + i);
     }
-    find_corners(image.levels[level + 1], at, first, last, coarse);
-    for (std::size_t i = first; i < last; ++i)
-      store(image.unit * trilinear(image.texels, fine, coarse, i, at.level[i] - static_cast<float>(level)),
-            out + i);
   }
 }
 
 void image_colors(const postrender::ImageView& image, const postrender::Run& run, postrender::Rgbx* out) {
-  LookUps at;
-  for (std::size_t first = 0; first < run.count; first += kBlock) {
-    const std::size_t count = run.count - first < kBlock ? run.count - first : kBlock;
-    place(image, run, first, count, at);
-    find_levels(image, run, first, count, at);
-    image_block(image, at, count, out + first);
+  if (run.count == 0) return;
+  Block blocks[2];
+  prepare(image, run, 0, blocks[0]);
+  for (std::size_t first = 0, k = 0; first < run.count; first += kBlock, k = 1 - k) {
+    if (first + kBlock < run.count) prepare(image, run, first + kBlock, blocks[1 - k]);
+    mix_texels(image, blocks[k], out + first);
   }
 }
 

@@ -1,6 +1,7 @@
 // Two colours side by side: one register with AVX2, two with SSE2, and the same bits.
 #pragma once
 
+#include "postrender/image.h"
 #include "postrender/lanes.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -17,6 +18,11 @@ inline TwoColors each_times(float first, float second, TwoColors x) {
 }
 inline Float4 first_of(TwoColors x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); }
 inline Float4 second_of(TwoColors x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); }
+inline TwoColors two_of(Float4 a, Float4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline TwoColors load_two(const postrender::Rgbx* from) { return load<TwoColors>(from); }
+inline void store_two(TwoColors x, postrender::Rgbx* to) {
+  __builtin_memcpy(static_cast<void*>(to), &x, sizeof x);
+}
 inline TwoColors firsts_of(TwoColors a, TwoColors b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
 }
@@ -43,9 +49,18 @@ inline TwoColors widened(Short8 half) {
 
 inline TwoColors operator+(TwoColors a, TwoColors b) { return {a.first + b.first, a.second + b.second}; }
 inline TwoColors operator-(TwoColors a, TwoColors b) { return {a.first - b.first, a.second - b.second}; }
+inline TwoColors operator*(TwoColors a, TwoColors b) { return {a.first * b.first, a.second * b.second}; }
 inline TwoColors operator*(float s, TwoColors a) { return {s * a.first, s * a.second}; }
 inline TwoColors each_times(float first, float second, TwoColors x) {
   return {first * x.first, second * x.second};
+}
+inline TwoColors two_of(Float4 a, Float4 b) { return {a, b}; }
+inline TwoColors load_two(const postrender::Rgbx* from) {
+  return {load<Float4>(from), load<Float4>(from + 1)};
+}
+inline void store_two(TwoColors x, postrender::Rgbx* to) {
+  store(x.first, to);
+  store(x.second, to + 1);
 }
 inline Float4 first_of(TwoColors x) { return x.first; }
 inline Float4 second_of(TwoColors x) { return x.second; }
