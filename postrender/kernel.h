@@ -10,7 +10,7 @@
 
 #include "postrender/color.h"
 #include "postrender/image.h"
-#include "postrender/spectrum.h"
+#include "postrender/spectral_view.h"
 #include "postrender/texture.h"
 
 namespace nullcone::postrender {
@@ -50,16 +50,6 @@ struct Lit {
   const float *g, *weight;
   const Rgbx* colors;
   Rgbx* sum;
-};
-
-/// A LineTable as pixel loops see it.
-struct LinesView {
-  const LineTable::Line* lines;
-  std::size_t count;
-  bool mixed;                     ///< colours are amounts of three spectra; else filters before one
-  double first_nm, per_nm, last;  ///< of the response: sample i stands at first_nm + i / per_nm, i up to last
-  const std::array<double, 3>* response;
-  TableView power;
 };
 
 /// The appearance of a pixel without a crossing, or behind an opaque one.

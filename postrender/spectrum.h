@@ -15,6 +15,7 @@
 
 #include "postrender/image.h"
 #include "postrender/spectral_distribution.h"
+#include "postrender/spectral_view.h"
 
 namespace nullcone::postrender {
 
@@ -44,20 +45,6 @@ struct ShiftRange {
   bool operator==(const ShiftRange&) const = default;
 };
 
-/// From one node of a table to the next: c[0] + c[1] s + c[2] s^2 + c[3] s^3, s from 0 to 1. One cache line.
-struct alignas(64) TableNode {
-  std::array<Rgbx, 4> c;
-};
-
-/// A table as pixel loops see it. Nodes stand where the upper bits of the float g change.
-struct TableView {
-  const TableNode* nodes;
-  float from, to;
-  std::int32_t unused_bits;  ///< of g's mantissa between two nodes
-  std::int32_t first;        ///< upper bits at the first node
-  std::int32_t stride;       ///< nodes that stand side by side for one g: 1, or 3 for red, green and blue
-};
-
 /// One or three colours (linear sRGB) by g, by cubic interpolation between nodes that grow denser until the
 /// error is below kTableError, or until they take kTableBytes.
 class SpectralTable {
@@ -85,11 +72,7 @@ inline constexpr double kBrightestEntry = 1e28;
 
 /// Spectral lines, which no table resolves: each is looked up in the sensor's own curves.
 struct LineTable {
-  struct Line {
-    double wavelength_nm, strength;
-    int component = 0;  ///< of three spectra: whose it is
-  };
-  std::vector<Line> lines;
+  std::vector<TableLine> lines;
   double first_nm = 0, step_nm = 1;
   std::vector<std::array<double, 3>> response;  ///< of the sensor, in linear sRGB
   std::shared_ptr<const SpectralTable> power;   ///< of g
