@@ -66,6 +66,11 @@ Look look_of_scale(const Look& look, const std::string& object, double white_cd_
   appearance = look.objects.at(object).appearance;
   if (appearance.texture && !std::holds_alternative<ColorTexture>(*appearance.texture))
     appearance.texture.reset();
+  if (appearance.spectrum && appearance.spectrum->kind == SpectrumLook::Kind::materials)
+    appearance.spectrum = SpectrumLook{SpectrumLook::Kind::filtered,
+                                       true,
+                                       {appearance.spectrum->spectra[0]},
+                                       appearance.spectrum->key + "first"};
   return out;
 }
 

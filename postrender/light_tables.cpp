@@ -49,6 +49,18 @@ std::shared_ptr<const LineTable> line_table(const std::vector<AnySpectrum>& spec
   return out;
 }
 
+/// The spectra as this sensor wants them: display colours stay as bright as white was, whatever sees them.
+std::vector<AnySpectrum> spectra_for(const SpectrumLook& look, const Sensor& sensor) {
+  std::vector<AnySpectrum> out = look.spectra;
+  if (look.physical || out.empty() || &sensor == &standard_observer()) return out;
+  const Color white = sensor.rgb(sum(out)->fold(sensor, 1));
+  const double luminance = static_cast<double>(kLuminance.r) * white[0] +
+                           static_cast<double>(kLuminance.g) * white[1] +
+                           static_cast<double>(kLuminance.b) * white[2];
+  for (AnySpectrum& one : out) one = scaled(one, luminance > 0 ? 1 / luminance : 0);
+  return out;
+}
+
 Light make(const SpectrumLook& look, const Effects& effects, const Sensor& sensor, ShiftRange range) {
   using Kind = SpectrumLook::Kind;
   std::vector<SpectralTable::Colors> colors;
@@ -56,7 +68,7 @@ Light make(const SpectrumLook& look, const Effects& effects, const Sensor& senso
   if (look.kind == Kind::display && power == 0) return {};
   if (look.kind == Kind::display) colors = {power_of(power)};
   if (look.kind == Kind::total_radiance) colors = luminances(power);
-  for (const AnySpectrum& spectrum : look.spectra)
+  for (const AnySpectrum& spectrum : spectra_for(look, sensor))
     colors.push_back(continuous_colors(spectrum, effects, sensor));
   return {std::make_shared<SpectralTable>(colors, range), line_table(look.spectra, effects, sensor, range),
           look.physical};

@@ -125,6 +125,13 @@ Blink parse_blink(JsonObject in, const LookSource& source) {
   return out;
 }
 
+/// Textures and spectra of materials go together.
+void check_materials(const AppearanceLook& look, const JsonObject& in, const std::string& key) {
+  const bool spectra = look.spectrum && look.spectrum->kind == SpectrumLook::Kind::materials,
+             texture = look.texture && is_of_materials(*look.texture);
+  if (spectra != texture) in.refuse(key, "a texture and a spectrum of type materials go together");
+}
+
 ObjectLook parse_object(JsonObject in, const LookSource& source) {
   ObjectLook object;
   object.appearance = parse_appearance(in, source);
@@ -134,6 +141,10 @@ ObjectLook parse_object(JsonObject in, const LookSource& source) {
     for (JsonObject& slice : in.objects("time_slices"))
       object.time_slices.push_back(parse_time_slice(slice, source));
   check_fades(in, object.time_slices);
+  check_materials(object.appearance, in, "");
+  for (std::size_t i = 0; i < object.time_slices.size(); ++i)
+    check_materials(inherited(object.time_slices[i].appearance, object.appearance), in,
+                    "time_slices/" + std::to_string(i));
   in.finish();
   return object;
 }

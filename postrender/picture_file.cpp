@@ -1,11 +1,15 @@
 #include "postrender/picture_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -140,8 +144,18 @@ void write(const std::string& path, const std::string& part, std::string_view fo
   spec.attribute("DateTime", "");  // else that of writing, and the same picture would make other bytes
   const std::unique_ptr<ImageOutput> out = ImageOutput::create(std::string(format));
   if (!out) throw WorkError(path, "this build of OpenImageIO cannot write " + std::string(format));
+  // PNG and JPEG go through memory: their libraries say nothing of a full disk, or end the program.
+  OIIO::Filesystem::IOVecOutput memory;
+  const bool through_memory =
+      (format == "png" || format == "jpeg") && out->supports("ioproxy") && out->set_ioproxy(&memory);
   const bool written = out->open(part, spec) && out->write_image(type, pixels) && out->close();
   if (!written) throw WorkError(path, "cannot be written: " + out->geterror());
+  if (!through_memory) return;
+  std::ofstream file(part, std::ios::binary);
+  const std::vector<unsigned char>& bytes = memory.buffer();
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw WorkError(path, "cannot be written: " + std::string(std::strerror(errno)));
 }
 
 /// As far as half floats go.

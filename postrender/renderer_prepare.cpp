@@ -59,8 +59,6 @@ std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, c
   const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
   const TextureLook texture = own.texture.value_or(ColorTexture{plain});
   const bool materials = is_of_materials(texture);
-  if (materials != (spectrum.kind == SpectrumLook::Kind::materials))
-    throw InputError("/objects/" + name, "a texture and a spectrum of type materials go together");
   Appearance out{materials ? ColorTexture{} : textures.make(texture), {}};
   set_emission(out, own, opacity, look.effects);
   const std::size_t first = shading.appearances.size();

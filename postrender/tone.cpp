@@ -1,10 +1,9 @@
 #include "postrender/tone.h"
 
 #include <bit>
-#include <charconv>
-#include <fstream>
 
 #include "core/base/error.h"
+#include "postrender/csv.h"
 
 namespace nullcone::postrender {
 
@@ -13,18 +12,6 @@ namespace {
 constexpr int kToneOctaves = 32;
 
 std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t from = text.find_first_not_of(kBlank);
-  return from == text.npos ? std::string_view{} : text.substr(from, text.find_last_not_of(kBlank) - from + 1);
-}
-
-bool read_number(std::string_view text, double& out) {
-  text = trimmed(text);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc{} && end == text.data() + text.size();
-}
 
 }  // namespace
 
@@ -61,22 +48,11 @@ FilmicCurve hable_curve(double white) {
 }
 
 std::vector<std::pair<double, double>> read_tone_csv(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path, "cannot open");
-  constexpr std::size_t kMost = 65536;
+  const TableKind kind = {"a luminance", "what is shown", true, 1e6};
   std::vector<std::pair<double, double>> out;
-  std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    const std::string_view text = trimmed(std::string_view(line).substr(0, line.find('#')));
-    if (text.empty()) continue;
-    const std::size_t comma = text.find(',');
-    std::pair<double, double> point;
-    if (comma == text.npos || !read_number(text.substr(0, comma), point.first) ||
-        !read_number(text.substr(comma + 1), point.second))
-      throw InputError(path,
-                       "line " + std::to_string(number) + ": expected two numbers, \"luminance,shown\"");
-    if (out.size() == kMost) throw InputError(path, "expected at most " + std::to_string(kMost) + " points");
-    out.push_back(point);
+  for (const std::vector<double>& row : read_table(path, "/tone/file", kind)) {
+    if (row.size() != 2) throw InputError(path + ": /tone/file", "expected two columns, luminance and shown");
+    out.emplace_back(row[0], row[1]);
   }
   return out;
 }
