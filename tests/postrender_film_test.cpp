@@ -160,8 +160,7 @@ TEST_F(Films, take_no_more_memory_than_they_may) {
   const auto read_with = [&](std::size_t most) {
     TextureMaker maker(cache, most);
     Shading shading;
-    shading.appearances.push_back(
-        {maker.make(*parsed.objects.at("earth").appearance.texture), Light{}});
+    shading.appearances.push_back({maker.make(*parsed.objects.at("earth").appearance.texture), Light{}});
     shading.objects.push_back({100, 0});
     maker.read_films(data, shading);
     return std::get<MovingTexture>(shading.appearances[0].texture);
