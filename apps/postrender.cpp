@@ -1,7 +1,6 @@
 // nullcone-postrender: a dataset and a look in, a picture out; or many.
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "apps/postrender_completion.h"
 #include "apps/postrender_explain.h"
@@ -22,12 +21,20 @@ void check_options(const PostrenderOptions& options) {
   postrender::check_picture_name(options.picture, options.bits);
   if (options.frames.empty() && !options.movie.empty()) refuse("--movie", "expected --frames");
   if (options.frames.empty() && options.overwrite) refuse("--overwrite", "expected --frames");
-  const std::string folder = std::filesystem::path(options.picture).parent_path().string();
-  if (!folder.empty() && !postrender::has_number(folder) && !std::filesystem::is_directory(folder))
-    refuse("--output", "the folder is not there");
+}
+
+/// Empty texts and zeros stand for options that are not given.
+void check_given(const PostrenderOptions& options, const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& value : option->results())
+      if (value.empty() && !option->check_lname("complete-set"))
+        throw InputError(option->get_positional() ? "DATA" : "--" + option->get_lnames().front(),
+                         "is empty; expected a value");
+  if (app.count("--bits") > 0 && options.bits == 0) throw InputError("--bits", "is 0; expected 8, 16 or 32");
 }
 
 int work(const PostrenderOptions& options, const CLI::App& app, bool number_given) {
+  check_given(options, app);
   if (!options.completion.empty()) return print_completion(app, options.completion);
   if (options.data.empty()) throw InputError("DATA", "is required (see --help)");
   if (!options.complete_set.empty() || app.count("--complete-set") > 0) return complete_set(options);

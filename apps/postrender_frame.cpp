@@ -32,6 +32,16 @@ std::vector<pr::Look> looks_at(const LookDocuments& documents, const Manifest& m
   return out;
 }
 
+std::vector<pr::Look> looks_at(LookDocuments documents, const Manifest& manifest, const std::string& data,
+                               int frame, const pr::PictureNames& pictures) {
+  pr::LookFiles files;
+  for (pr::LookDocument& document : documents) document.source.files = &files;
+  std::vector<pr::Look> out = looks_at(documents, manifest, data, frame);
+  for (const std::set<std::string>& names : {files.named, files.numbered})
+    for (const std::string& name : names) pictures.check_input(name);
+  return out;
+}
+
 ChannelSet needed_channels(const std::vector<pr::Look>& looks, const Manifest& manifest) {
   ChannelSet out;
   for (const pr::Look& look : looks) out = out | pr::needed_channels(look, manifest);
@@ -96,8 +106,8 @@ int render_picture(const PostrenderOptions& options) {
   Seconds seconds;
   // Steps 1 and 2: the manifest, then the looks against it.
   const Manifest manifest = read_manifest(files.data);
-  const std::vector<pr::Look> looks =
-      looks_at(read_documents(manifest, files, options.settings), manifest, files.data, options.frame);
+  const std::vector<pr::Look> looks = looks_at(read_documents(manifest, files, options.settings), manifest,
+                                               files.data, options.frame, pr::PictureNames({files}));
   check_outputs(files.picture, options.bits, looks);
   // Step 3: what they need of the dataset, and their textures at the same time.
   const auto textures = std::make_shared<pr::TextureCache>();

@@ -23,6 +23,10 @@ LookDocuments read_documents(const Manifest& manifest, const postrender::FrameFi
 std::vector<postrender::Look> looks_at(const LookDocuments& documents, const Manifest& manifest,
                                        const std::string& data, int frame,
                                        std::vector<postrender::LookInFull>* in_full = nullptr);
+/// The same; throws InputError where one of the pictures would overwrite a file that they name.
+std::vector<postrender::Look> looks_at(LookDocuments documents, const Manifest& manifest,
+                                       const std::string& data, int frame,
+                                       const postrender::PictureNames& pictures);
 
 /// The channels that they need, and no others.
 ChannelSet needed_channels(const std::vector<postrender::Look>& looks, const Manifest& manifest);

@@ -104,6 +104,13 @@ struct PartOf {
   std::string name;
 };
 
+/// In small letters, with its dot.
+std::string ending_of(const std::string& path) {
+  std::string out = fs::path(path).extension().string();
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
 std::string bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream out;
@@ -154,7 +161,18 @@ std::vector<std::string> arguments_for(const std::string& movie, const std::stri
 void check_movie_name(const std::string& path) {
   if (path.size() < 5 || !(path.ends_with(".mp4") || path.ends_with(".mkv")))
     throw InputError("--movie", "'" + printable(path, 80) + "' is no name of a movie; expected .mp4 or .mkv");
-  if (fs::is_directory(path)) throw InputError("--movie", path + " is a folder");
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw InputError("--movie", path + " is a folder");
+  const fs::path folder = fs::path(path).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw InputError("--movie", "the folder is not there: " + printable(folder.string()));
+}
+
+void check_movie_pictures(const std::string& picture) {
+  const std::string ending = ending_of(picture);
+  if (ending != ".png" && ending != ".jpg" && ending != ".jpeg")
+    throw InputError("--movie",
+                     "is made of the pictures; expected .png or .jpg for them, not " + printable(ending));
 }
 
 std::string find_ffmpeg() {
@@ -171,8 +189,7 @@ bool write_movie(const std::string& path, const std::vector<std::string>& pictur
                  const std::atomic<bool>& stop) {
   std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ends early is an error to report, not a death
   const PartOf part(path);
-  const bool png =
-      fs::path(pictures.front()).extension() == ".png" || fs::path(pictures.front()).extension() == ".PNG";
+  const bool png = ending_of(pictures.front()) == ".png";
   Ffmpeg ffmpeg(find_ffmpeg(), arguments_for(path, part.name, png, fps));
   bool reads = true;
   for (std::size_t i = 0; i < pictures.size() && reads; ++i) {

@@ -7,8 +7,11 @@
 
 namespace nullcone {
 
-/// Throws InputError unless `path` ends in .mp4 or .mkv.
+/// Throws InputError unless `path` ends in .mp4 or .mkv and can be a file.
 void check_movie_name(const std::string& path);
+
+/// Throws InputError unless pictures of this name are PNG or JPEG files.
+void check_movie_pictures(const std::string& picture);
 
 /// Where ffmpeg stands on PATH. Throws InputError if it does not.
 std::string find_ffmpeg();

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -52,7 +53,8 @@ std::string fingerprint_of(const Manifest& manifest, const std::vector<pr::LookI
   add(manifest.hits_sha256);
   for (const pr::LookInFull& look : looks) {
     add(look.text);
-    for (const std::string& file : look.files) add(pr::stamp_of_file(file));
+    for (const std::string& file : look.files.named) add(pr::stamp_of_file(file));
+    for (const std::string& file : look.files.numbered) add(pr::stamp_if_there(file));
   }
   return hash.digits();
 }
@@ -62,6 +64,21 @@ class Sequence {
   Sequence(const PostrenderOptions& options, std::vector<pr::FrameFiles> files)
       : options_(options), files_(std::move(files)), progress_(options, files_.size()) {
     if (!pr::has_number(options.data)) manifest_ = read_manifest(options.data);
+  }
+
+  /// Throws InputError where a picture would overwrite a file that a look names.
+  void check_inputs() const {
+    const pr::PictureNames pictures(files_);
+    const pr::FrameFiles* last = nullptr;
+    for (const pr::FrameFiles& files : files_) {
+      // The same look names the same files.
+      const bool same = last != nullptr && files.looks == last->looks && (manifest_ || !files.looks.empty());
+      last = &files;
+      if (same) continue;
+      const Manifest manifest = manifest_ ? *manifest_ : read_manifest(files.data);
+      looks_at(read_documents(manifest, files, options_.settings), manifest, files.data, files.frame,
+               pictures);
+    }
   }
 
   /// False when it was stopped.
@@ -99,8 +116,13 @@ class Sequence {
     plan.fingerprint = fingerprint_of(plan.manifest, in_full, options_.bits);
     std::vector<std::string> inputs = files.looks;
     inputs.push_back(files.data);
-    for (const pr::LookInFull& look : in_full)
-      inputs.insert(inputs.end(), look.files.begin(), look.files.end());
+    for (const pr::LookInFull& look : in_full) {
+      inputs.insert(inputs.end(), look.files.named.begin(), look.files.named.end());
+      std::ranges::copy_if(look.files.numbered, std::back_inserter(inputs), [](const std::string& file) {
+        std::error_code error;
+        return std::filesystem::exists(file, error);
+      });
+    }
     plan.there = !options_.overwrite && pr::is_newer(files.picture, inputs) &&
                  pr::fingerprint_of_picture(files.picture) == plan.fingerprint;
     return plan;
@@ -181,8 +203,7 @@ class Sequence {
 void check_movie(const PostrenderOptions& options) {
   if (options.movie.empty()) return;
   check_movie_name(options.movie);
-  if (pr::is_exr_name(options.picture))
-    throw InputError("--movie", "is made of the pictures; expected .png or .jpg for them, not .exr");
+  check_movie_pictures(options.picture);
   find_ffmpeg();
 }
 
@@ -197,6 +218,7 @@ int render_sequence(const PostrenderOptions& options) {
   // Step 2: the pictures.
   catch_stop_signals();
   Sequence sequence(options, files);
+  sequence.check_inputs();
   const bool whole = sequence.run();
   sequence.finish(whole);
   if (!whole) return 3;

@@ -34,29 +34,32 @@ int show_channel(const PostrenderOptions& options) {
   if (!options.range.empty()) given = pr::parse_range(options.range);
   if (given && as_numbers)
     throw InputError("--range", "numbers in an .exr file have no scale; expected .png");
+  if (as_numbers && options.bits != 0 && options.bits != 32)
+    throw InputError("--bits", "a channel in an .exr file has 32 bits");
+  const pr::FrameFiles files = pr::files_of({options.data, {}, options.picture}, {options.frame}).front();
   Stopwatch watch;
   Seconds seconds;
   // Step 1: the channel.
-  const pr::ChannelChoice choice = pr::find_channel(name, read_manifest(options.data), options.data);
-  const Dataset dataset = read_dataset(options.data, choice.wanted());
+  const pr::ChannelChoice choice = pr::find_channel(name, read_manifest(files.data), files.data);
+  const Dataset dataset = read_dataset(files.data, choice.wanted());
   const Manifest& manifest = dataset.manifest;
   const std::vector<float> values = pr::channel_values(choice, dataset);
   seconds.read = watch.lap();
   if (as_numbers) {
-    pr::write_channel(options.picture, name, manifest, values);
+    pr::write_channel(files.picture, name, manifest, values);
     seconds.write = watch.lap();
     if (options.json) report_scale(name, manifest.width, manifest.lines, nullptr, seconds);
-    report_times(options, options.picture, manifest.width, manifest.lines, seconds);
+    report_times(options, files.picture, manifest.width, manifest.lines, seconds);
     return 0;
   }
   // Step 2: its colours.
   const pr::ColorScale scale = pr::choose_scale(choice.info, values, given);
   const pr::Image image = pr::false_color_picture(scale, choice.info, manifest, values);
   seconds.render = watch.lap();
-  pr::write_picture(options.picture, image, options.bits);
+  pr::write_picture(files.picture, image, options.bits);
   seconds.write = watch.lap();
   if (options.json) report_scale(name, image.width, image.height, &scale, seconds);
-  report_times(options, options.picture, image.width, image.height, seconds);
+  report_times(options, files.picture, image.width, image.height, seconds);
   return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/version.h>
 #include <boost/version.hpp>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <new>
 
@@ -52,7 +53,9 @@ int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& w
   try {
     const int status = work();
     std::cout.flush();
-    return std::cout ? status : complain(app, "standard output: cannot write", 1);
+    // What was flushed in vain before is gone, and only the flag tells.
+    const bool written = std::cout && std::ferror(stdout) == 0;
+    return written ? status : complain(app, "standard output: cannot write", 1);
   } catch (const InputError& error) {
     return complain(app, error.what(), 2);
   } catch (const std::bad_alloc&) {

@@ -52,8 +52,24 @@ Run parse_run(std::string_view part) {
   return run;
 }
 
-/// One path a file, as far as the names tell.
-std::string same_name(const std::string& path) { return fs::absolute(path).lexically_normal().string(); }
+/// Absolute and without links, as far as these can be followed.
+std::string real_name(const fs::path& path) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(fs::absolute(path), error);
+  return (error ? fs::absolute(path).lexically_normal() : real).string();
+}
+
+std::string name_in(const std::string& real_folder, const std::string& path) {
+  return (fs::path(real_folder) / fs::path(path).filename()).string();
+}
+
+/// The real name of the folder of a picture.
+std::string checked_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw InputError("--output", "the folder is not there: " + printable(folder.string()));
+  return real_name(folder.empty() ? "." : folder);
+}
 
 void check_inputs(const std::vector<FrameFiles>& files) {
   std::set<std::string> asked;
@@ -77,19 +93,13 @@ void check_inputs(const std::vector<FrameFiles>& files) {
 }
 
 void check_outputs(const std::vector<FrameFiles>& files) {
-  std::set<std::string> inputs, pictures;
+  const PictureNames pictures(files);
+  std::set<std::string> inputs;
   for (const FrameFiles& one : files) {
-    inputs.insert(same_name(one.data));
-    for (const std::string& look : one.looks) inputs.insert(same_name(look));
+    inputs.insert(one.data);
+    inputs.insert(one.looks.begin(), one.looks.end());
   }
-  for (const FrameFiles& one : files) {
-    if (one.picture.empty()) continue;
-    if (inputs.contains(same_name(one.picture)))
-      throw InputError("--output", one.picture + " is an input too; expected another name");
-    if (!pictures.insert(same_name(one.picture)).second)
-      throw InputError("--output", "several frames would be written to " + one.picture +
-                                       "; expected #### in the name, for the frame's number");
-  }
+  for (const std::string& input : inputs) pictures.check_input(input);
 }
 
 }  // namespace
@@ -127,6 +137,33 @@ std::string numbered(const std::string& pattern, int frame, const std::string& o
 
 bool FramePatterns::any() const {
   return has_number(data) || has_number(picture) || std::ranges::any_of(looks, has_number);
+}
+
+PictureNames::PictureNames(const std::vector<FrameFiles>& files) {
+  std::map<std::string, std::string> folders;  // by the name as it is told
+  std::error_code error;
+  for (const FrameFiles& one : files) {
+    if (one.picture.empty()) continue;
+    const std::string folder = fs::path(one.picture).parent_path().string();
+    auto real = folders.find(folder);
+    if (real == folders.end()) real = folders.emplace(folder, checked_folder(folder)).first;
+    if (fs::is_directory(one.picture, error)) throw InputError("--output", one.picture + " is a folder");
+    if (!pictures_.emplace(name_in(real->second, one.picture), one.picture).second)
+      throw InputError("--output", "several frames would be written to " + one.picture +
+                                       "; expected #### in the name, for the frame's number");
+    in_folders_.insert(fs::path(one.picture).filename().string());
+  }
+}
+
+void PictureNames::check_input(const std::string& file) const {
+  // Films name many files, and real names take long.
+  std::error_code error;
+  if (!in_folders_.contains(fs::path(file).filename().string()) && !fs::is_symlink(file, error)) return;
+  const fs::path folder = fs::path(file).parent_path();
+  // A link itself would be overwritten, and so would what it leads to.
+  for (const std::string& name : {name_in(real_name(folder.empty() ? "." : folder), file), real_name(file)})
+    if (const auto found = pictures_.find(name); found != pictures_.end())
+      throw InputError("--output", found->second + " is an input too; expected another name");
 }
 
 std::vector<FrameFiles> files_of(const FramePatterns& patterns, const std::vector<int>& frames) {

@@ -1,6 +1,8 @@
 // Numbers of frames, and names of files with a number in them: "picture.####.png".
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,8 +35,21 @@ struct FramePatterns {
   bool any() const;
 };
 
-/// The files of all frames. Throws InputError where pictures would overwrite one another or an input, and for
-/// inputs that are not there (all of them in one line).
+/// The pictures of all frames.
+class PictureNames {
+ public:
+  /// Throws InputError where they would overwrite one another, are folders, or their folder is not there.
+  explicit PictureNames(const std::vector<FrameFiles>& files);
+  /// Throws InputError where `file` is one of them.
+  void check_input(const std::string& file) const;
+
+ private:
+  std::map<std::string, std::string> pictures_;  ///< as they are told, by real name
+  std::set<std::string> in_folders_;             ///< their names without folders
+};
+
+/// The files of all frames. Throws InputError as PictureNames does, where a picture would overwrite the data
+/// or a look, and for inputs that are not there (all of them in one line).
 std::vector<FrameFiles> files_of(const FramePatterns& patterns, const std::vector<int>& frames);
 
 }  // namespace nullcone::postrender

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -46,30 +47,38 @@ Number parse_value(const JsonObject& in, const json& value, const std::string& k
   return out;
 }
 
-/// Calls f(keyframes) for all of a document that go by the time of emission.
-template <class F>
-void for_each_keyframes(const json& entry, const std::string& place, const std::string& pointer, F&& f) {
-  if (is_keyframes(entry)) return f(parse_emission_keyframes(entry, place, pointer));
+/// All keyframes of a document, by where they stand in it.
+using Parsed = std::map<const json*, Keyframes>;
+
+/// Those that go by the time of emission; others are refused.
+void parse_all(const json& entry, const std::string& place, const std::string& pointer, Parsed& out) {
+  if (is_keyframes(entry)) {
+    out.emplace(&entry, parse_emission_keyframes(entry, place, pointer));
+    return;
+  }
   if (entry.is_object())
-    for (const auto& [key, value] : entry.items()) for_each_keyframes(value, place, pointer + "/" + key, f);
+    for (const auto& [key, value] : entry.items())
+      parse_all(value, place, pointer + "/" + escape_pointer(key), out);
   if (entry.is_array())
     for (std::size_t i = 0; i < entry.size(); ++i)
-      for_each_keyframes(entry[i], place, pointer + "/" + std::to_string(i), f);
+      parse_all(entry[i], place, pointer + "/" + std::to_string(i), out);
 }
 
 /// The document as it is at one time.
-json at_time(const json& entry, double time, bool whole, const std::vector<std::string>& whole_keys) {
-  if (is_keyframes(entry)) {
-    const double value = parse_keyframes(entry, "", "").at(time);
+json at_time(const json& entry, double time, bool whole, const std::vector<std::string>& whole_keys,
+             const Parsed& parsed) {
+  if (!entry.is_structured()) return entry;
+  if (const auto found = parsed.find(&entry); found != parsed.end()) {
+    const double value = found->second.at(time);
     return whole ? json(std::round(value)) : json(value);
   }
-  json out = entry;
+  json out = entry.is_object() ? json::object() : json::array();
   if (entry.is_object())
-    for (auto& [key, value] : out.items())
-      value =
-          at_time(value, time, whole || std::ranges::find(whole_keys, key) != whole_keys.end(), whole_keys);
+    for (const auto& [key, value] : entry.items())
+      out[key] = at_time(value, time, whole || std::ranges::find(whole_keys, key) != whole_keys.end(),
+                         whole_keys, parsed);
   if (entry.is_array())
-    for (json& value : out) value = at_time(value, time, whole, whole_keys);
+    for (const json& value : entry) out.push_back(at_time(value, time, whole, whole_keys, parsed));
   return out;
 }
 
@@ -106,12 +115,14 @@ Nodes at_nodes(const json& entry, std::size_t steps, const std::vector<std::stri
                const std::string& place, const std::string& pointer) {
   Nodes out;
   std::vector<double> times;
-  for_each_keyframes(entry, place, pointer, [&](const Keyframes& keys) {
+  Parsed parsed;  // once: there are many nodes
+  parse_all(entry, place, pointer, parsed);
+  for (const auto& [at, keys] : parsed) {
     if (!times.empty() && keys.clock != out.timeline.clock)
       throw InputError(place + ": " + pointer, "expected all its keyframes by t, or all by tau");
     out.timeline.clock = keys.clock;
     times.insert(times.end(), keys.times.begin(), keys.times.end());
-  });
+  }
   if (times.empty()) return {{}, {entry}};
   std::ranges::sort(times);
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -124,7 +135,7 @@ Nodes at_nodes(const json& entry, std::size_t steps, const std::vector<std::stri
       nodes.push_back(std::lerp(times[i], times[i + 1], static_cast<double>(k) / static_cast<double>(steps)));
   nodes.push_back(times.back());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  for (const double time : nodes) out.values.push_back(at_time(entry, time, false, whole));
+  for (const double time : nodes) out.values.push_back(at_time(entry, time, false, whole, parsed));
   out.timeline.count = nodes.size();
   return out;
 }

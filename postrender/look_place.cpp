@@ -7,14 +7,19 @@
 
 namespace nullcone::postrender {
 
-std::string parse_file(JsonObject& in, std::string_view key, const LookSource& source) {
+std::string parse_file_name(JsonObject& in, std::string_view key, const LookSource& source) {
   const std::string file = in.text(key);
   if (file.empty() || file.find('\0') != std::string::npos) in.refuse(key, "expected the name of a file");
   const std::filesystem::path path = (std::filesystem::path(source.folder) / file).lexically_normal();
-  if (source.files != nullptr) source.files->insert(path.string());
   // A look that is explained may be kept elsewhere.
   if (source.survey != nullptr) in.note(key, std::filesystem::absolute(path).string());
   return path.string();
+}
+
+std::string parse_file(JsonObject& in, std::string_view key, const LookSource& source) {
+  const std::string path = parse_file_name(in, key, source);
+  if (source.files != nullptr) source.files->named.insert(path);
+  return path;
 }
 
 Rgb decoded(const std::vector<double>& srgb) {

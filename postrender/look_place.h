@@ -11,17 +11,25 @@
 
 namespace nullcone::postrender {
 
-/// A look as JSON and where it came from.
-struct LookSource {
-  std::string place;                       ///< a file's name, for complaints
-  std::string pointer;                     ///< of the look inside that file: "" or "/look"
-  std::string folder;                      ///< relative files are resolved against this
-  double frame = 0;                        ///< of a sequence, for what shows the time
-  JsonSurvey* survey = nullptr;            ///< where asked for: told of all defaults
-  std::set<std::string>* files = nullptr;  ///< where asked for: gets all files that the look names
+/// Files that a look names; resolved.
+struct LookFiles {
+  std::set<std::string> named;
+  std::set<std::string> numbered;  ///< of image sequences: they need not all be there
 };
 
-/// The name of a file under `key`, resolved against the folder of the look.
+/// A look as JSON and where it came from.
+struct LookSource {
+  std::string place;             ///< a file's name, for complaints
+  std::string pointer;           ///< of the look inside that file: "" or "/look"
+  std::string folder;            ///< relative files are resolved against this
+  double frame = 0;              ///< of a sequence, for what shows the time
+  JsonSurvey* survey = nullptr;  ///< where asked for: told of all defaults
+  LookFiles* files = nullptr;    ///< where asked for: gets all files that the look names
+};
+
+/// The name under `key`, resolved against the folder of the look; not noted as that of a file.
+std::string parse_file_name(JsonObject& in, std::string_view key, const LookSource& source);
+/// The same of a file, which is noted in `source.files`.
 std::string parse_file(JsonObject& in, std::string_view key, const LookSource& source);
 
 /// Colours in JSON are sRGB numbers in [0, 1], as colour pickers show them; in memory they are linear.

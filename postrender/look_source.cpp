@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,9 @@ json parse_value(const std::string& text, const std::string& place) {
   } catch (const InputError&) {
     // A broken list or object is a mistake; anything else is meant as a text.
     if (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"')) throw;
+    char* end = nullptr;
+    const bool number = !text.empty() && !std::isfinite(std::strtod(text.c_str(), &end)) && *end == '\0';
+    if (number) throw InputError(place, "expected a finite number (a text of that kind in quotes)");
     return text;
   }
 }

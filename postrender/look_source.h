@@ -25,8 +25,8 @@ struct LookDocument {
 
 /// What a parsed look amounts to.
 struct LookInFull {
-  std::string text;             ///< JSON: a look that gives the same picture, with all defaults; canonical
-  std::set<std::string> files;  ///< that it names
+  std::string text;  ///< JSON: a look that gives the same picture, with all defaults; canonical
+  LookFiles files;
   JsonSurvey survey;
 };
 

@@ -91,6 +91,7 @@ MovingLook parse_sequence(JsonObject in, const ImageLook& image, const LookSourc
   for (long number = first; number <= last; ++number) {
     ImageLook frame = image;
     frame.file = numbered(image.file, number);
+    if (source.files != nullptr) source.files->numbered.insert(frame.file);
     out.frames.emplace_back(std::move(frame));
   }
   return out;
@@ -101,7 +102,8 @@ TextureLook parse_image(JsonObject& in, const LookSource& source, const std::opt
                         bool materials) {
   ImageLook image;
   if (materials) image.materials.first = 0;
-  image.file = parse_file(in, "file", source);
+  const bool film = !materials && in.has("sequence");
+  image.file = film ? parse_file_name(in, "file", source) : parse_file(in, "file", source);
   image.pointer = pointer_of(in, "file", source);
   image.uv = plain.value_or(UvTransform{});
   const std::string filter = in.word("filter", {"mipmap", "bilinear", "anisotropic"}, "mipmap");
@@ -110,7 +112,7 @@ TextureLook parse_image(JsonObject& in, const LookSource& source, const std::opt
                                         : Filter::anisotropic;
   if (materials) return image;
   image.alpha = in.boolean("alpha", false);
-  if (!in.has("sequence")) return image;
+  if (!film) return image;
   if (in.text("file").find('#') == std::string::npos)
     in.refuse("file", "expected a name with #### in the place of the number");
   return parse_sequence(in.object("sequence"), image, source);

@@ -72,6 +72,11 @@ std::string stamp_of_file(const std::string& path) {
   return std::to_string(time.time_since_epoch().count()) + "/" + std::to_string(size);
 }
 
+std::string stamp_if_there(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error) ? stamp_of_file(path) : "absent";
+}
+
 bool is_newer(const std::string& path, const std::vector<std::string>& inputs) {
   std::error_code error;
   const auto time = fs::last_write_time(path, error);

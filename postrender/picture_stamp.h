@@ -15,6 +15,8 @@ std::string fingerprint_comment(const std::string& fingerprint);
 
 /// Size and time of a file, for fingerprints; throws InputError where it cannot be looked at.
 std::string stamp_of_file(const std::string& path);
+/// The same, or a word where there is no such file.
+std::string stamp_if_there(const std::string& path);
 
 /// Whether `path` is at least as new as all of `inputs`.
 bool is_newer(const std::string& path, const std::vector<std::string>& inputs);

@@ -142,11 +142,21 @@ TEST(LookInFull, knows_keys_words_and_files) {
                json::parse(R"({"objects":{"earth":{"texture":{"type":"image","file":"a.png"}}}})")),
            {"d.exr", "/look", "maps"}},
           manifest, 0, &in_full);
-  EXPECT_EQ(in_full.files, (std::set<std::string>{"maps/a.png"}));
+  EXPECT_EQ(in_full.files.named, (std::set<std::string>{"maps/a.png"}));
   EXPECT_TRUE(in_full.survey.keys["/look/objects/earth"].contains("time_slices"));
   EXPECT_EQ(in_full.survey.words["/look/gamut"], (std::vector<std::string>{"hue_preserving", "clip"}));
   const json full = json::parse(in_full.text);
   EXPECT_TRUE(std::filesystem::path(full["objects"]["earth"]["texture"]["file"]).is_absolute());
+}
+
+TEST(LookInFull, knows_the_pictures_of_films_but_not_their_pattern) {
+  LookInFull in_full;
+  look_at({std::make_shared<const json>(json::parse(R"({"objects":{"earth":{"texture":{"type":"image",
+               "file":"f_##.png","sequence":{"frames":[9,10]}}}}})")),
+           {"d.exr", "/look", "maps"}},
+          flat_map(2, 2).manifest, 0, &in_full);
+  EXPECT_EQ(in_full.files.named, std::set<std::string>{});
+  EXPECT_EQ(in_full.files.numbered, (std::set<std::string>{"maps/f_09.png", "maps/f_10.png"}));
 }
 
 TEST(Legend, tells_time_and_temperature_of_the_frame) {

@@ -125,6 +125,24 @@ for signal in TERM INT; do
   rendered $((400 - there))
 done
 
+# Films: their numbered files count, not the pattern, and they need not all be there at once.
+for i in 1 2; do cp grey.ppm.png f_0$i.png; done
+cat >film.json <<'JSON'
+{"objects": {"square_left": {"texture": {"type": "image", "file": "f_##.png", "sequence": {"frames": [1, 3], "clock": "frame"}}}}}
+JSON
+film=("$post" data.exr --look film.json --frames 0-1)
+run 0 "${film[@]}" -o 'a/f.#.png'; rendered 2
+run 0 "${film[@]}" -o 'a/f.#.png'; rendered 0
+touch f_02.png; run 0 "${film[@]}" -o 'a/f.#.png'; rendered 2
+mv f_02.png f_02.kept; run 2 "${film[@]}" -o 'a/f.#.png'
+grep -q "f_02.png" err || fault "does not name the picture that is missing: $(cat err)"
+mv f_02.kept f_02.png
+
+# As many keyframes as may be are read once each, not once a node.
+python3 -c 'import json; print(json.dumps({"objects": {"earth": {"texture": {"type": "checkerboard", "counts": [
+    {"by": "t", "keyframes": [[i, 1 + i % 9] for i in range(4096)]}, 2], "colors": [[0, 0, 0], [1, 1, 1]]}}}}))' >keys.json
+run 0 timeout 10 "$post" data.exr --look keys.json -q -o a/keys.png
+
 # Wrong input: one line, nothing written, before any work.
 rm -rf bad && mkdir bad
 bad=(--look look.json -o 'bad/o.#.png')
@@ -154,7 +172,37 @@ refused_with 2 "data.0002.exr: is not an OpenEXR file" "$post" 'data.####.exr' -
 refused_with 2 "needs ffmpeg" env PATH=/nowhere "$post" data.exr "${bad[@]}" --frames 0-3 --movie bad/m.mp4
 refused_with 2 "expected .mp4 or .mkv" "$post" data.exr "${bad[@]}" --frames 0-3 --movie bad/m.gif
 refused_with 2 "--movie" "$post" data.exr -o bad/o.png --movie bad/m.mp4
+refused_with 2 "--movie: the folder is not there" "$post" data.exr "${bad[@]}" --frames 0-3 --movie bad/none/m.mp4
+refused_with 2 "expected .png or .jpg for them, not .tif" "$post" data.exr --look look.json -o 'bad/o.#.tif' --frames 0-3 --movie bad/m.mp4
 [ -z "$(ls bad)" ] || fault "refused movies leave $(ls bad)"
+for option in --look --show --set; do refused_with 2 "$option: is empty" "$post" data.exr -o bad/o.png "$option" ''; done
+for option in --look --movie; do refused_with 2 "$option: is empty" "$post" data.exr "${bad[@]}" --frames 0-3 "$option" ''; done
+refused_with 2 "--bits: is 0" "$post" data.exr -o bad/o.png --bits 0
+refused_with 2 "--bits: a channel in an .exr file has 32 bits" "$post" data.exr --show status -o bad/o.exr --bits 16
+refused_with 2 "--output: the folder is not there: bad/7" "$post" data.exr -o 'bad/#/o.png' --frames 7-9
+mkdir bad/o.png
+refused_with 2 "--output: bad/o.png is a folder" "$post" data.exr -o bad/o.png
+rmdir bad/o.png
+for number in 1e400 NaN -inf; do refused_with 2 "expected a finite number" "$post" data.exr -o bad/o.png --set exposure.ev=$number; done
+refused_with 2 "expected one of alpha, file, filter, offset, rotate_deg, scale, sequence, type" "$post" data.exr --look look.json -o bad/o.png --set objects.square_left.texture.file_name=x
+
+# What a look names is an input; so is the dataset of a channel.
+ln -s . link
+cp grey.ppm.png grey.before
+for picture in grey.ppm.png "$PWD/link/grey.ppm.png"; do refused_with 2 "is an input too" "$post" data.exr --look look.json -o "$picture"; done
+refused_with 2 "is an input too" "$post" data.exr --look film.json -o f_02.png
+refused_with 2 "is an input too" "${film[@]}" -o 'f_0#.png'
+refused_with 2 "is an input too" "$post" 'data.####.exr' --look film.json --frames 0-3 -o 'f_0#.png'
+refused_with 2 "is an input too" "$post" data.exr --show status -o data.exr
+printf '1,0\n2,1\n' >tone.csv && ln -s ../tone.csv bad/tone.png
+refused_with 2 "is an input too" "$post" data.exr --set 'tone={"curve":"table","file":"bad/tone.png"}' -o bad/tone.png
+rm bad/tone.png
+same grey.ppm.png grey.before
+[ -z "$(ls bad)" ] || fault "refused runs leave $(ls bad)"
+
+# Reports that cannot be written.
+run 1 bash -c '"$@" >/dev/full' - "$post" data.exr --look look.json --frames 0-3 --json -q -o 'a/full.#.png'
+grep -q "standard output: cannot write" err || fault "says nothing of the report that is lost: $(cat err)"
 
 # The movie is whole or not there.
 if command -v ffmpeg >/dev/null; then
@@ -174,7 +222,7 @@ complete() { "$post" data.exr --look look.json --complete-set "$1" | tr '\n' ' '
 expect() { checks=$((checks + 1)); [ "$2" = "$3" ] || fault "$1: '$2', expected '$3'"; }
 expect objects "$(complete objects.)" "objects.earth. objects.square_left. objects.square_right. "
 expect gamut "$(complete gamut=)" "gamut=hue_preserving gamut=clip "
-expect effects "$(complete effects.)" "effects.doppler= effects.searchlight= "
+expect effects "$(complete effects.)" "effects.doppler= effects.irradiance_exponents. effects.radiance_exponents. effects.searchlight= "
 expect pointer "$(complete /objects/earth/sp | tr ' ' '\n' | grep spec)" "/objects/earth/spectrum/"
 cat >complete.sh <<'BASH'
 source <("$1" --completion bash)

@@ -99,7 +99,7 @@ class JsonObject {
   const nlohmann::json* value_;
   std::string place_, pointer_;
   JsonSurvey* survey_;
-  mutable std::set<std::string, std::less<>> asked_;  ///< for the survey: whether they are there, at least
+  mutable std::set<std::string, std::less<>> asked_;  ///< whether they are there, at least
   std::set<std::string, std::less<>> known_;
 };
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -53,7 +55,7 @@ void JsonObject::note(std::string_view key, const json& value) const {
 }
 
 bool JsonObject::has(std::string_view key) const {
-  if (survey_ != nullptr) asked_.emplace(key);
+  asked_.emplace(key);
   return value_->contains(std::string(key));
 }
 
@@ -215,8 +217,12 @@ void JsonObject::finish() const {
   }
   for (const auto& [key, value] : value_->items()) {
     if (known_.contains(key)) continue;
+    // Of the keys that were only asked for, those that are there are refused too.
+    std::set<std::string> possible(known_.begin(), known_.end());
+    std::ranges::copy_if(asked_, std::inserter(possible, possible.end()),
+                         [&](const std::string& name) { return !value_->contains(name); });
     std::string list;
-    for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
+    for (const std::string& name : possible) list += (list.empty() ? "" : ", ") + name;
     refuse(escape_pointer(key), "unknown key; expected one of " + list);
   }
 }
