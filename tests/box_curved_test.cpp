@@ -93,9 +93,9 @@ TEST(BoxInCurvedSpace, IsMetWhereItsSixFacesAre) {
     const FacesMet found = compare_faces(scene);
     beyond += found.beyond;
     EXPECT_LE(found.off, 1U) << scene;  // a ray through an edge may meet a quad more, or less
-    EXPECT_GT(found.met, kSanitized ? 5U : 100U) << scene;
+    EXPECT_GT(found.met, kSanitized ? 2U : 100U) << scene;
   }
-  EXPECT_GT(beyond, 10U) << "some rays should come back";
+  EXPECT_TRUE(kSanitized || beyond > 10) << "some rays should come back";
 }
 
 TEST(BoxInCurvedSpace, LooksTheSameWithIntegratedRays) {
@@ -173,7 +173,7 @@ TEST(BoxInCurvedSpace, FallingBoxesInGoedel) {
   EXPECT_EQ(wrong, 0U);
   EXPECT_EQ(lost, 0U);
   EXPECT_GT(checked, kSanitized ? 50'000U : 800'000U);
-  EXPECT_GT(inside, checked / 50);
+  EXPECT_GT(inside, checked / (kSanitized ? 100 : 50));
 }
 
 }  // namespace
