@@ -14,31 +14,9 @@ using Color = std::array<double, 3>;
 constexpr int kFewestBits = 2, kMostBits = 6;
 constexpr double kError = 1e-6;
 
-/// Coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
-std::array<double, 4> cubic(double a, double b, double c, double d) {
-  return {a, (-11 * a + 18 * b - 9 * c + 2 * d) / 2, 9 * (2 * a - 5 * b + 4 * c - d) / 2,
-          9 * (-a + 3 * b - 3 * c + d) / 2};
-}
-
-double magnitude(const Color& c) { return std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])}); }
-
 bool sensible(float g) { return g > 0 && g < std::numeric_limits<float>::infinity(); }
 
 }  // namespace
-
-LitTable::Axis::Axis(ShiftRange within, int bits)
-    : range{std::clamp(within.from, 1e-6f, 1e6f),
-            std::clamp(within.to, std::clamp(within.from, 1e-6f, 1e6f), 1e6f)},
-      unused_bits(23 - bits),
-      first(std::bit_cast<std::int32_t>(range.from) >> unused_bits),
-      cells((std::bit_cast<std::int32_t>(range.to) >> unused_bits) - first + 1) {}
-
-double LitTable::Axis::place(std::int32_t cell, double part) const {
-  const auto start = [&](std::int32_t i) {
-    return static_cast<double>(std::bit_cast<float>((first + i) << unused_bits));
-  };
-  return std::lerp(start(cell), start(cell + 1), part);
-}
 
 LitTable::LitTable(AnySpectrum lamp, AnySpectrum reflectance, const Effects& effects, const Sensor& sensor,
                    ShiftRange shifts, ShiftRange light_shifts)
@@ -54,8 +32,8 @@ LitTable::LitTable(AnySpectrum lamp, AnySpectrum reflectance, const Effects& eff
     return out;
   };
   for (int bits = kFewestBits;; ++bits) {
-    along_ = Axis(shifts, bits);
-    across_ = Axis(light_shifts, bits);
+    along_ = BitGrid(shifts, bits);
+    across_ = BitGrid(light_shifts, bits);
     fill(colors);
     error_ = measure(colors);
     if (error_ < kError || bits == kMostBits || 4 * bytes() > kTableBytes) return;
@@ -74,9 +52,10 @@ void LitTable::fill(const Colors& colors) {
             colors(along_.place(i, static_cast<double>(a) / 3), across_.place(j, static_cast<double>(b) / 3));
     for (std::size_t c = 0; c < 3; ++c) {
       std::array<std::array<double, 4>, 4> rows;
-      for (std::size_t a = 0; a < 4; ++a) rows[a] = cubic(y[a][0][c], y[a][1][c], y[a][2][c], y[a][3][c]);
+      for (std::size_t a = 0; a < 4; ++a)
+        rows[a] = cubic_through(y[a][0][c], y[a][1][c], y[a][2][c], y[a][3][c]);
       for (std::size_t b = 0; b < 4; ++b) {
-        const auto column = cubic(rows[0][b], rows[1][b], rows[2][b], rows[3][b]);
+        const auto column = cubic_through(rows[0][b], rows[1][b], rows[2][b], rows[3][b]);
         for (std::size_t a = 0; a < 4; ++a) (&cells_[k].c[4 * a + b].r)[c] = static_cast<float>(column[a]);
       }
     }
@@ -113,14 +92,8 @@ double LitTable::measure(const Colors& colors) const {
 
 Rgb LitTable::color(float g, float g_light) const {
   if (!sensible(g) || !sensible(g_light)) return {};
-  const auto find = [](const Axis& axis, float x) {
-    const auto bits = std::bit_cast<std::int32_t>(std::clamp(x, axis.range.from, axis.range.to));
-    const std::int32_t mask = (1 << axis.unused_bits) - 1;
-    return std::pair{(bits >> axis.unused_bits) - axis.first,
-                     static_cast<float>(bits & mask) / static_cast<float>(1 << axis.unused_bits)};
-  };
-  const auto [i, s] = find(along_, g);
-  const auto [j, t] = find(across_, g_light);
+  const auto [i, s] = along_.find(g);
+  const auto [j, t] = across_.find(g_light);
   const auto& c = cells_[static_cast<std::size_t>(i) * static_cast<std::size_t>(across_.cells) +
                          static_cast<std::size_t>(j)]
                       .c;

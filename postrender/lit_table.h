@@ -1,6 +1,7 @@
 // Lit surfaces: what is seen of a reflectance under a lamp, by two frequency ratios.
 #pragma once
 
+#include "postrender/bit_grid.h"
 #include "postrender/light_tables.h"
 
 namespace nullcone::postrender {
@@ -26,17 +27,11 @@ class LitTable {
   struct Cell {
     std::array<Rgbx, 16> c;
   };
-  struct Axis {
-    ShiftRange range;
-    std::int32_t unused_bits, first, cells;
-    Axis(ShiftRange within, int bits);
-    double place(std::int32_t cell, double part) const;
-  };
   using Colors = std::function<std::array<double, 3>(double, double)>;
   void fill(const Colors& colors);
   double measure(const Colors& colors) const;
 
-  Axis along_, across_;
+  BitGrid along_, across_;
   std::vector<Cell> cells_;
   double error_ = 0;
 };

@@ -201,8 +201,9 @@ TextureLook placed(TextureLook texture, const Placement& placement) {
   return out;
 }
 
-/// The image itself, where there is one.
-ImageLook* image_of(TextureLook& texture) {
+/// The image itself, where there is one; of a const look a const one.
+template <class Look>
+auto image_of(Look& texture) -> decltype(std::get_if<ImageLook>(&texture)) {
   if (auto* image = std::get_if<ImageLook>(&texture)) return image;
   auto* moving = std::get_if<MovingLook>(&texture);
   return moving == nullptr ? nullptr : std::get_if<ImageLook>(&moving->frames.front());
@@ -211,8 +212,7 @@ ImageLook* image_of(TextureLook& texture) {
 }  // namespace
 
 bool is_of_materials(const TextureLook& texture) {
-  TextureLook copy = texture;
-  const ImageLook* image = image_of(copy);
+  const ImageLook* image = image_of(texture);
   return image != nullptr && image->materials.first >= 0;
 }
 

@@ -5,57 +5,14 @@
 #include <cstddef>
 #include <deque>
 #include <span>
-#include <string>
-#include <variant>
 #include <vector>
 
 #include "core/record/dataset.h"
-#include "postrender/coats.h"
-#include "postrender/emission.h"
 #include "postrender/kernel.h"
 #include "postrender/layers.h"
-#include "postrender/moving_texture.h"
-#include "postrender/spectrum.h"
+#include "postrender/shading.h"
 
 namespace nullcone::postrender {
-
-/// How a surface looks, ready for pixels.
-struct Appearance {
-  Texture texture;
-  Light light;
-  float opacity = 1;       ///< times that of the crossing; 0: not seen at all
-  Emission emission = {};  ///< what else changes with the time of emission; the opacity there counts too
-  bool changes = false;    ///< whether `emission` says anything
-  /// What else radiates there, in the same place: further materials.
-  struct Component {
-    Texture texture;
-    Light light;
-    bool operator==(const Component&) const = default;
-  };
-  std::vector<Component> more = {};
-
-  bool operator==(const Appearance&) const = default;
-};
-
-/// A look with everything that a pixel needs at hand: textures read, spectra tabulated, names turned into
-/// numbers.
-struct Shading {
-  std::vector<Appearance> appearances;
-  std::vector<ObjectShading> objects;  ///< by id - 1
-  Rgb background;                      ///< display colour behind everything
-  std::vector<std::string> notes;      ///< what the user should know of it
-  bool operator==(const Shading&) const = default;
-};
-
-/// Whether any appearance radiates in cd/m^2.
-bool has_physical(const Shading& shading);
-/// Whether there are display colours, be it those of the background.
-bool has_display(const Shading& shading);
-/// Whether the colours of textures may be kept from one picture to the next: one crossing a pixel, which
-/// shows one texture at all times.
-bool keeps_colors(const Shading& shading);
-/// Whether two shadings (of one dataset) look up the same colours.
-bool same_textures(const Shading& a, const Shading& b);
 
 /// Colours of textures along a line, of its first crossings.
 struct KeptColors {

@@ -1,11 +1,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
-#include "postrender/spectrum.h"
+#include "postrender/bit_grid.h"
 
 namespace nullcone::postrender {
 
@@ -13,30 +12,6 @@ namespace {
 
 using Color = std::array<double, 3>;
 constexpr int kFewestBits = 4;
-
-/// Cells of a table: one a value of the upper bits of g. Samples stand at every third of a cell.
-struct Grid {
-  std::int32_t unused_bits, first, cells;
-
-  Grid(ShiftRange range, int bits)
-      : unused_bits(23 - bits),
-        first(std::bit_cast<std::int32_t>(range.from) >> unused_bits),
-        cells((std::bit_cast<std::int32_t>(range.to) >> unused_bits) - first + 1) {}
-
-  Grid halved() const {
-    Grid out = *this;
-    --out.unused_bits;
-    out.first *= 2;
-    out.cells *= 2;
-    return out;
-  }
-  double start(std::int32_t cell) const {
-    return static_cast<double>(std::bit_cast<float>((first + cell) << unused_bits));
-  }
-  double place(std::int32_t cell, double part) const { return std::lerp(start(cell), start(cell + 1), part); }
-};
-
-double magnitude(const Color& c) { return std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])}); }
 
 Color bounded(Color c) {
   const double largest = magnitude(c);
@@ -52,11 +27,8 @@ using Cubic = std::array<Color, 4>;
 Cubic cubic(const Color* y) {
   Cubic out;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double a = y[0][i], b = y[1][i], c = y[2][i], d = y[3][i];
-    out[0][i] = a;
-    out[1][i] = (-11 * a + 18 * b - 9 * c + 2 * d) / 2;
-    out[2][i] = 9 * (2 * a - 5 * b + 4 * c - d) / 2;
-    out[3][i] = 9 * (-a + 3 * b - 3 * c + d) / 2;
+    const auto k = cubic_through(y[0][i], y[1][i], y[2][i], y[3][i]);
+    for (std::size_t j = 0; j < 4; ++j) out[j][i] = k[j];
   }
   return out;
 }
@@ -78,7 +50,7 @@ TableNode node_of(const Cubic& c) {
 /// the samples of the next. Cells that are exact enough are halved by their own cubics.
 class Column {
  public:
-  Column(const SpectralTable::Colors& colors, const Grid& grid) : colors_(colors) {
+  Column(const SpectralTable::Colors& colors, const BitGrid& grid) : colors_(colors) {
     samples_.resize(size(3 * grid.cells + 1));
     tbb::parallel_for(std::int32_t{0}, 3 * grid.cells + 1, [&](std::int32_t i) {
       samples_[size(i)] = bounded(colors_(grid.place(i / 3, i % 3 / 3.0)));
@@ -86,7 +58,7 @@ class Column {
     settled_.assign(size(grid.cells), false);
     look_between(grid);
   }
-  void refine(const Grid& fine) {
+  void refine(const BitGrid& fine) {
     std::vector<Color> merged;
     std::vector<bool> settled;
     for (std::size_t i = 0; i < between_.size(); ++i) merged.insert(merged.end(), {samples_[i], between_[i]});
@@ -100,7 +72,7 @@ class Column {
 
   /// The worst error between samples, relative to the colour there or a hundredth of the largest within half
   /// an octave. Cells of less than kTableError / 8 need no more looking at.
-  double settle(const Grid& grid) {
+  double settle(const BitGrid& grid) {
     std::vector<double> error(size(grid.cells)), largest(size(grid.cells)), nearby(largest);
     for (std::int32_t cell = 0; cell < grid.cells; ++cell)
       for (int k = 0; k < 3; ++k)
@@ -135,7 +107,7 @@ class Column {
     return out;
   }
 
-  void look_between(const Grid& grid) {
+  void look_between(const BitGrid& grid) {
     between_.resize(size(3 * grid.cells));
     tbb::parallel_for(std::int32_t{0}, grid.cells, [&](std::int32_t cell) {
       for (int k = 0; k < 3; ++k) {
@@ -151,18 +123,11 @@ class Column {
   std::vector<bool> settled_;  ///< by cell
 };
 
-/// What float and the powers of g can hold.
-ShiftRange sensible(ShiftRange range) {
-  constexpr float kLeast = 1e-12f, kMost = 1e12f;
-  const float from = std::clamp(range.from, kLeast, kMost);
-  return {from, std::clamp(range.to, from, kMost)};
-}
-
 }  // namespace
 
 SpectralTable::SpectralTable(const std::vector<Colors>& colors, ShiftRange range)
-    : range_(sensible(range)), stride_(static_cast<std::int32_t>(colors.size())) {
-  Grid grid(range_, kFewestBits);
+    : stride_(static_cast<std::int32_t>(colors.size())) {
+  BitGrid grid(range, kFewestBits);
   std::vector<Column> columns;
   for (const Colors& one : colors) columns.emplace_back(one, grid);
   const auto settle = [&] {
@@ -170,7 +135,7 @@ SpectralTable::SpectralTable(const std::vector<Colors>& colors, ShiftRange range
     for (Column& column : columns) worst = std::max(worst, column.settle(grid));
     return worst;
   };
-  const auto room = [&](const Grid& of) {
+  const auto room = [&](const BitGrid& of) {
     return static_cast<std::size_t>(of.cells) * colors.size() * sizeof(TableNode) <= kTableBytes;
   };
   error_ = settle();
@@ -179,6 +144,7 @@ SpectralTable::SpectralTable(const std::vector<Colors>& colors, ShiftRange range
     for (Column& column : columns) column.refine(grid);
     error_ = settle();
   }
+  range_ = grid.range;
   unused_bits_ = grid.unused_bits;
   first_ = grid.first;
   for (std::int32_t cell = 0; cell < grid.cells; ++cell)
