@@ -63,6 +63,10 @@ class Kernel final : public Spacetime {
     return out;
   }
 
+  ConnectionsReport connect(std::span<const double>, const Event&, const Triple&, int) const override {
+    return {};
+  }
+
   double walk(std::span<const double> values, const Event& event, const Event& k, double step,
               std::size_t count) const override {
     const M metric = make_metric<M>(values);

@@ -41,11 +41,11 @@ LampLook parse_lamp(JsonObject in, const LookSource& source) {
 }  // namespace
 
 std::map<std::string, LampLook> parse_lamps(JsonObject in, const LookSource& source,
-                                            const std::vector<std::string>& names) {
+                                            const std::vector<ObjectEntry>& lamps) {
   std::map<std::string, LampLook> out;
   for (const std::string& name : in.keys()) {
-    if (std::ranges::find(names, name) == names.end())
-      in.refuse(name, names.empty() ? "the dataset has no lamps" : "the dataset has no such lamp");
+    if (std::ranges::find(lamps, name, &ObjectEntry::name) == lamps.end())
+      in.refuse(name, lamps.empty() ? "the dataset has no lamps" : "the dataset has no such lamp");
     out.emplace(name, parse_lamp(in.object(name), source));
   }
   return out;

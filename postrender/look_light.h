@@ -20,8 +20,8 @@ struct LampLook {
   std::optional<std::set<int>> paths;  ///< of light to the surface, from 0; empty: all
 };
 
-/// Lamps by name. Throws InputError for those that are not among `names`.
+/// Lamps by name. Throws InputError for those that are not among `lamps`.
 std::map<std::string, LampLook> parse_lamps(JsonObject in, const LookSource& source,
-                                            const std::vector<std::string>& names);
+                                            const std::vector<ObjectEntry>& lamps);
 
 }  // namespace nullcone::postrender

@@ -121,7 +121,7 @@ TEST(Looks, lamps_are_those_of_the_dataset) {
     "blink":{"channel":"tau","period":3},"paths":[0,2]}}})";
   const std::string none = complaint([&] { look_of(look, manifest); });
   EXPECT_NE(none.find("/lights/sun: the dataset has no lamps"), std::string::npos) << none;
-  manifest.lights = {"sun"};
+  manifest.lights = {{"sun", 0}};
   const LampLook sun = look_of(look, manifest).lights.at("sun");
   EXPECT_EQ(sun.intensity, Number{2.5});
   EXPECT_TRUE(sun.blink);

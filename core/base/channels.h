@@ -50,6 +50,22 @@ inline constexpr std::array kHitChannelInfo = {
     ChannelInfo{"P.Z", false, "scene", "any", "chart coordinate z minus that of the observation", 2},
 };
 
+/// What is known of the light that reaches a crossing from one lamp along one path; channels of `hits` named
+/// light.<lamp>.<path>.<name>, behind all others, lamp by lamp and path by path (from 0, the brightest
+/// first).
+inline constexpr std::array kLightChannelInfo = {
+    ChannelInfo{"E", false, "1/scene^2", "from 0",
+                "irradiance of a lamp of intensity 1 without its powers of g: cos(alpha)/|det D| times what "
+                "gets through; "
+                "0: no such path, or in shadow",
+                3},
+    ChannelInfo{"shift", false, "1", "from 0", "frequency ratio g = at the surface / emitted by the lamp", 3},
+    ChannelInfo{"t", false, "scene", "any",
+                "coordinate time at which the lamp emitted minus that of observation", 3},
+    ChannelInfo{"tau", false, "scene", "any",
+                "the lamp's proper time then, minus its tau_origin in the manifest", 3},
+};
+
 /// Channels of the flat part `rays`, one value a ray.
 inline constexpr std::array kRayChannelInfo = {
     ChannelInfo{"status", true, "1", "0 to 7", "how the ray ended (see Status)"},
@@ -62,7 +78,9 @@ inline constexpr std::array kRayChannelInfo = {
 
 /// Some of the channels of `hits`.
 struct ChannelSet {
-  std::uint32_t bits = 0;  ///< bit i: number i of kHitChannelInfo
+  std::uint32_t bits = 0;  ///< bit i: number i of kHitChannelInfo; the last bit: all channels of light
+
+  static constexpr std::uint32_t kLight = 1U << 31;
 
   constexpr bool has(std::size_t channel) const { return (bits >> channel & 1U) != 0; }
   /// Whether it has all channels of the group ("uv", "N", "shift", …).
@@ -73,7 +91,7 @@ struct ChannelSet {
 
   /// The channels of a group; none for an unknown name.
   static constexpr ChannelSet of(std::string_view group) {
-    ChannelSet out;
+    ChannelSet out{group == "light" ? kLight : 0};
     for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
       if (kHitChannelInfo[i].group() == group) out.bits |= 1U << i;
     return out;
@@ -89,6 +107,6 @@ inline constexpr ChannelSet kDefaultChannels =
 /// What takes more work to find than the others.
 inline constexpr ChannelSet kDetailChannels =
     ChannelSet::of("duv") | ChannelSet::of("N") | ChannelSet::of("K") | ChannelSet::of("P");
-inline constexpr ChannelSet kAllChannels = {(1U << kHitChannelInfo.size()) - 1};
+inline constexpr ChannelSet kAllChannels = {((1U << kHitChannelInfo.size()) - 1) | ChannelSet::kLight};
 
 }  // namespace nullcone

@@ -35,7 +35,8 @@ struct Manifest {
   std::string
       setting;  ///< JSON: metric_parameters, camera, observation, paths, as they were with all defaults
   std::vector<ObjectEntry> objects;
-  std::vector<std::string> lights = {};  ///< lamps whose light is recorded, by name
+  std::vector<ObjectEntry> lights = {};  ///< lamps whose light is recorded
+  int light_paths = 0;                   ///< paths a lamp; 0 without lamps
   std::string version, isa, host;
   double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
   std::string hits_sha256, rays_sha256;  ///< see PayloadHash

@@ -15,6 +15,12 @@
 
 namespace nullcone {
 
+/// Light from one lamp along one path: the channels light.<lamp>.<path>.*, one value a crossing.
+struct LightPath {
+  std::string prefix;  ///< "light.<lamp>.<path>."
+  std::vector<float> E, shift, t, tau;
+};
+
 /// All crossings of all pixels, pixel by pixel (row by row from the top left), nearest first.
 /// The crossings of pixel i stand at offset[i] … offset[i + 1] − 1 of every column that is recorded; the
 /// others are empty.
@@ -26,6 +32,8 @@ struct Hits {
   std::vector<float> u, v, shift, t, tau, mu;
   std::array<std::vector<float>, 4> duv;      ///< du/dx, dv/dx, du/dy, dv/dy
   std::array<std::vector<float>, 3> N, K, P;  ///< normal, direction of emission, place
+
+  std::vector<LightPath> light;  ///< lamp by lamp, path by path; empty unless channels.has("light")
 
   std::size_t count() const { return offset.empty() ? 0 : offset.back(); }
 };
@@ -60,8 +68,40 @@ inline const ChannelInfo& info_of(const Rays&, std::size_t channel) { return kRa
 inline bool has_channel(const Hits& hits, std::size_t channel) { return hits.channels.has(channel); }
 inline bool has_channel(const Rays&, std::size_t) { return true; }
 
+/// Columns of the light from these lamps, empty; further tables can then be filled beside it.
+inline void set_lamps(Hits& hits, const std::vector<std::string>& lamps, int paths) {
+  hits.light.clear();
+  for (const std::string& lamp : lamps)
+    for (int path = 0; path < paths; ++path)
+      hits.light.push_back({"light." + lamp + "." + std::to_string(path) + ".", {}, {}, {}, {}});
+  hits.channels = hits.light.empty() ? ChannelSet{hits.channels.bits & ~ChannelSet::kLight}
+                                     : hits.channels | ChannelSet::of("light");
+}
+/// All columns of a path, in the order of kLightChannelInfo.
+template <class Path>
+requires std::same_as<std::remove_const_t<Path>, LightPath>
+auto columns(Path& path) { return std::tie(path.E, path.shift, path.t, path.tau); }
+
+/// Calls f(info, column, other columns…) for every channel of light that `hits` holds; the names in `info`
+/// are whole (light.<lamp>.<path>.E) and end with the call.
+template <class F, class Table, class... Others>
+void for_each_light_channel(F&& f, Table& hits, Others&... others) {
+  for (std::size_t i = 0; i < hits.light.size(); ++i) {
+    const auto visit = [&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+      const std::string name = hits.light[i].prefix + std::string(kLightChannelInfo[k].name);
+      ChannelInfo info = kLightChannelInfo[k];
+      info.name = name;
+      f(info, std::get<k>(columns(hits.light[i])), std::get<k>(columns(others.light[i]))...);
+    };
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+      (visit(std::integral_constant<std::size_t, k>{}), ...);
+    }
+    (std::make_index_sequence<kLightChannelInfo.size()>{});
+  }
+}
+
 /// Calls f(info, column, other columns…) for every channel that `table` holds, with the columns of the other
-/// tables that stand at the same place.
+/// tables that stand at the same place; of Hits the channels of light come last.
 template <class F, class Table, class... Others>
 void for_each_channel(F&& f, Table& table, Others&... others) {
   const auto visit = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
@@ -72,6 +112,7 @@ void for_each_channel(F&& f, Table& table, Others&... others) {
     (visit(std::integral_constant<std::size_t, i>{}), ...);
   };
   all(std::make_index_sequence<std::tuple_size_v<decltype(columns(table))>>{});
+  if constexpr (std::same_as<std::remove_const_t<Table>, Hits>) for_each_light_channel(f, table, others...);
 }
 
 }  // namespace nullcone

@@ -83,6 +83,28 @@ struct Object {
   bool transparent = false;  ///< what stands behind it is recorded too
 };
 
+/// A lamp: a point on a worldline, or a small rigid shape about it whose surface shines evenly.
+struct Lamp {
+  std::string name;
+  Placing placing;                  ///< local; the axes are those of a quad
+  ShapeType type = ShapeType::sky;  ///< sphere or quad; anything else: a point
+  double radius = 0;                ///< sphere
+  std::array<double, 2> edges{};    ///< quad: lengths along x and y; it shines to both sides
+  std::uint32_t samples = 1;        ///< points on the shape that stand for it
+  std::uint32_t body = 0;  ///< number from 1 of the object that casts no shadow in its light; 0: none
+
+  bool is_point() const { return type != ShapeType::sphere && type != ShapeType::quad; }
+};
+
+/// What shines on surfaces, and which light is written down.
+struct Lights {
+  std::vector<Lamp> lamps;
+  int windings = 1;     ///< how often light may go round on its way
+  int paths = 1;        ///< written down a lamp and crossing: the brightest
+  bool shadows = true;  ///< whether objects stand in the way
+  double cap = 1e12;    ///< E is at most this: on caustics the light of points is infinite
+};
+
 /// What is written down of a ray.
 struct Records {
   std::uint32_t max_hits = 0;  ///< crossings a ray, also behind opaque surfaces; 0: all up to an opaque one
@@ -101,6 +123,7 @@ struct Scene {
   bool integrated = false;  ///< rays are integrated, not taken from closed forms
   Accuracy accuracy = kBalanced;
   std::vector<Object> objects;
+  Lights lights;
   Records records;
   std::string canonical;  ///< canonical JSON of the whole scene
   std::string sha256;     ///< of the canonical JSON without its look

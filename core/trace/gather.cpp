@@ -120,8 +120,7 @@ Band gather(const TracedBand& band, const Scene& scene) {
   }
   for_each_channel(  // what nobody asked for is dropped
       [&](const ChannelInfo& channel, auto& column) {
-        if (!scene.records.channels.has(static_cast<std::size_t>(&channel - kHitChannelInfo.data())))
-          column = {};
+        if (!scene.records.channels.has(channel.group())) column = {};
       },
       out.hits);
   out.hits.channels = scene.records.channels;

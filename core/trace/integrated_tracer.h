@@ -63,6 +63,7 @@ class IntegratedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
+  double lamp_tau_origin(std::size_t) const override { return 0; }
   double distortion(std::size_t object) const override { return distortions_[object]; }
 
  private:

@@ -25,15 +25,23 @@ struct HitDetail {
   Triple N{}, K{}, P{};
 };
 
+/// Light that reaches a crossing along one path from a lamp (kLightChannelInfo has the meanings).
+struct HitLight {
+  double E = 0, shift = 1, t = 0, tau = 0;
+};
+
 struct RayRecord {
   std::uint32_t status, steps;
   float error, drift;
 };
 
-/// Room for crossings; `details` may be null.
+/// Room for crossings; `details` and `lights` may be null. Of lights there are `paths` entries a crossing:
+/// all lamps' paths, lamp by lamp.
 struct HitRoom {
   HitRecord* hits;
   HitDetail* details;
+  HitLight* lights = nullptr;
+  std::size_t paths = 0;
 };
 
 /// Takes the crossings of a band: by pixel, those of a pixel by Z. Kernels hold no containers, so memory is
@@ -64,6 +72,8 @@ class Tracer {
   /// By how much lengths within object number `object` (from 0) are off, relatively: its frame is right to
   /// first order where the spacetime has no rigid motions.
   virtual double distortion(std::size_t object) const = 0;
+  /// Proper time that the channel `light.*.tau` of lamp number `lamp` (from 0) counts from.
+  virtual double lamp_tau_origin(std::size_t lamp) const = 0;
 };
 
 /// Why an object, or the observer, cannot be traced; `limit` is the bounding radius that would do, where that
@@ -73,6 +83,19 @@ struct Unfit {
   std::size_t object;  ///< its number from 0, or kObserver
   const char* reason;
   double limit;
+};
+
+/// A null geodesic from a lamp at rest to an event, as the observer at rest there sees it.
+struct ConnectionReport {
+  double lambda, travel_time;  ///< affine length with frequency 1 at the event; difference of chart times
+  Triple view;                 ///< direction in which the lamp is seen, in the static tetrad
+  double area_distance;        ///< sqrt |det D|, with its vertex at the event
+  int parity;                  ///< sign of det D: -1 after an odd number of caustics
+  int winding;                 ///< how often the light goes round, from 0
+};
+struct ConnectionsReport {
+  std::vector<ConnectionReport> connections;  ///< by affine length
+  bool complete = true;                       ///< false: some may have been missed
 };
 
 struct GeodesicPoint {
@@ -106,6 +129,10 @@ class Spacetime {
                                               const Event& k, std::span<const double> lambda,
                                               const Accuracy* accuracy = nullptr,
                                               ObserverFrame frame = ObserverFrame::at_rest) const = 0;
+  /// All null geodesics that reach the event from a lamp at rest at `source`, of up to `windings` windings:
+  /// by closed forms, or by shooting where there are none.
+  virtual ConnectionsReport connect(std::span<const double> parameters, const Event& event,
+                                    const Triple& source, int windings) const = 0;
   /// Evaluates the closed form (or where there is none, the right-hand side) at `count` affine parameters
   /// `step` apart, as wide as the kernel is, and sums what it finds: the yardstick of benchmarks.
   virtual double walk(std::span<const double> parameters, const Event& event, const Event& k, double step,
