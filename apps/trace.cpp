@@ -107,7 +107,7 @@ int work(Options& options) {
   check_memory(scene.camera, scene.records.channels, bands_in_flight(threads), available_memory(), source);
   Talk talk(options.common.quiet);
   const auto tracer = prepare_scene(spacetime, scene, source);
-  if (const Note note = talk.notes()) note_distortions(*tracer, scene, source, note);
+  if (const Note note = talk.notes()) note_doubts(*tracer, scene, source, note);
   Manifest manifest = describe(spacetime, scene, *tracer);
   if (!options.shard.empty()) {
     const Lines lines = lines_of(read_shard(options.shard), manifest.height);

@@ -54,14 +54,16 @@ struct GoedelOrbit {
     S clearance(const S& lambda, S& tau) const;
   };
   /// What all rays from one event have in common: the event in the chart about C, and how the tetrad turns.
-  struct Launch {
-    Vec4<double> start;
-    Complex<double> turn;
-  };
-  Launch launch(const Vec4<double>& event) const;
-  /// The ray with past-directed tangent k (static tetrad) at the event.
   template <class S>
-  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const;
+  struct Launch {
+    Vec4<S> start;
+    Complex<S> turn;
+  };
+  template <class S>
+  Launch<S> launch(const Vec4<S>& event) const;
+  /// The ray with past-directed tangent k (static tetrad) at the event.
+  template <class S, class T>
+  Ray<S> ray(const Launch<T>& launch, const Vec4<S>& k) const;
 
  private:
   void find_box(const LocalFrame<Goedel>& frame);
@@ -73,12 +75,14 @@ struct GoedelOrbit {
   Comoving comoving(const Vec4<double>& world) const;
 };
 
-inline GoedelOrbit::Launch GoedelOrbit::launch(const Vec4<double>& event) const {
-  return {metric.to_origin(centre, event), metric.turn(centre, event)};
+template <class S>
+GoedelOrbit::Launch<S> GoedelOrbit::launch(const Vec4<S>& event) const {
+  const auto at = convert<S>(centre);
+  return {metric.to_origin(at, event), metric.turn(at, event)};
 }
 
-template <class S>
-GoedelOrbit::Ray<S> GoedelOrbit::ray(const Launch& launch, const Vec4<S>& k) const {
+template <class S, class T>
+GoedelOrbit::Ray<S> GoedelOrbit::ray(const Launch<T>& launch, const Vec4<S>& k) const {
   const Vec4<S> x = convert<S>(launch.start), local = turned_about_e3(launch.turn, k);
   // k.K = dt/dtau (E + Omega L + v p_z), with the tangent's covariant components at the start.
   const Vec4<S> lower = convert<S>(metric.g(launch.start)) * static_tetrad(metric, x).to_chart(local);

@@ -64,7 +64,10 @@ struct MinkowskiOrbit {
     }
   };
   struct Launch {};
-  Launch launch(const Vec4<double>&) const { return {}; }
+  template <class S>
+  Launch launch(const Vec4<S>&) const {
+    return {};
+  }
   template <class S>
   Ray<S> ray(const Launch&, const Vec4<S>& k) const {
     return {abs(boost(convert<S>(u), k)[0])};

@@ -1,7 +1,7 @@
 // A scene traced along closed-form paths: one object after the other, exact windows and bounds.
 #pragma once
 
-#include "core/trace/closed_onward.h"
+#include "core/trace/closed_shadow.h"
 #include "core/trace/details.h"
 #include "core/trace/hamilton.h"
 #include "core/trace/objects.h"
@@ -43,7 +43,10 @@ class ClosedTracer final : public Tracer {
         observation_{scene.observer.event},
         lookback_(scene.max_lookback),
         objects_(new AnyPlaced<M>[rules_.objects]),
-        clocks_(new Clock[rules_.objects]) {
+        clocks_(new Clock[rules_.objects]),
+        opacities_(new double[rules_.objects]),
+        light_rules_(scene.lights),
+        lamps_(new PlacedLamp<M>[light_rules_.lamps]) {
     resolution_ = 4e-15 * norm(spatial(observation_));
   }
 
@@ -53,11 +56,12 @@ class ClosedTracer final : public Tracer {
     const double margin = rules_.onward ? 1.001 : 1;
     for (std::size_t i = 0; i < rules_.objects; ++i) {
       const Object& object = scene.objects[i];
-      unfit.object = i;
+      unfit.number = i;
       double rate = 1;
       if (object.placing.type == PlacingType::local)
         rate = metric_.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
       clocks_[i] = clock_of<M>(object.placing, (observation_[0] - object.placing.worldline.event[0]) / rate);
+      opacities_[i] = object.opacity;
       if (object.shape.type == ShapeType::sky) continue;
       const Placing placing = from_observation<M>(object.placing, observation_[0]);
       objects_[i] =
@@ -65,7 +69,7 @@ class ClosedTracer final : public Tracer {
       if (!with_type(objects_[i], [&](const auto& placed) { return check(placed, object.shape, unfit); }))
         return false;
     }
-    return true;
+    return place_lamps(metric_, scene.lights, observation_[0], lamps_.get(), unfit);
   }
 
   void trace_band(int first_line, int lines, const BandRoom& room) const override {
@@ -80,7 +84,19 @@ class ClosedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
-  double lamp_tau_origin(std::size_t) const override { return 0; }
+  std::uint32_t object_about_lamp(std::size_t lamp) const override {
+    const Vec4<double> event = lamps_[lamp].lines[0].event(lamps_[lamp].clock.origin);
+    for (std::uint32_t number = 1; number <= rules_.objects; ++number) {
+      if (rules_.is_sky(number) || number == lamps_[lamp].body || opacities_[number - 1] < 1) continue;
+      const bool holds = with_type(objects_[number - 1], [&](const auto& placed) {
+        const auto path = placed.placing.path(placed.placing.launch(event), Vec4<double>{{1, 0, 0, 0}});
+        return holds_event(placed.body, placed.shape, path.at(0.0).event);
+      });
+      if (holds) return number;
+    }
+    return 0;
+  }
+  double lamp_tau_origin(std::size_t lamp) const override { return lamps_[lamp].clock.at_observation; }
   double distortion(std::size_t) const override { return 0; }
 
  private:
@@ -174,6 +190,7 @@ class ClosedTracer final : public Tracer {
     crossed.record.order = metric_.caustics(-(past[0] * crossed.record.Z), past[3] / past[0]);
     const std::uint32_t number = crossings[group.ray[0]].number;
     scatter(crossed.record, group, number, observation_[0], clocks_[number - 1].origin, to.hits);
+    if (to.lights) light_up(lit_point(metric_, crossed, placing), group, number, to);
     if (!to.details || !wanted_.any()) return;
 
     Detailed<Wide> detailed;
@@ -191,6 +208,27 @@ class ClosedTracer final : public Tracer {
                                   {scale * (event(0) - event(1)), scale * (event(2) - event(3))});
     }
     scatter(detailed, group, to.details);
+  }
+
+  /// Writes what the lamps send to a group of crossings with object number `own`.
+  void light_up(const LitPoint<Wide>& lit, const Group<Wide>& group, std::uint32_t own,
+                const HitRoom& to) const {
+    const auto let_through = [&](const Connection<Wide>& c, const Mask<Wide>& wanted, std::uint32_t body) {
+      Wide through(1.0);
+      if (!light_rules_.shadows) return through;
+      const Wide limit =
+          select(wanted, Wide(1 - 1e-9) * c.lambda, Wide(0.0));  // what holds the lamp is not in its way
+      for (std::uint32_t number = 1; number <= rules_.objects; ++number) {
+        if (number == body || rules_.is_sky(number)) continue;
+        const Wide start = number == own ? leaving(lit, c) : Wide(0.0);
+        const Wide until = select(through > Wide(0.0), limit, Wide(0.0));
+        through = through * with_type(objects_[number - 1], [&](const auto& placed) {
+                    return let_past(placed, opacities_[number - 1], lit, c, start, until);
+                  });
+      }
+      return through;
+    };
+    illuminate(metric_, lamps_.get(), light_rules_, lit, group, observation_[0], let_through, to);
   }
 
   HitDetail detail_of_sky(const CameraRays& camera, std::size_t ray, const Vec3<double>& direction) const {
@@ -212,6 +250,9 @@ class ClosedTracer final : public Tracer {
   double lookback_;
   std::unique_ptr<AnyPlaced<M>[]> objects_;
   std::unique_ptr<Clock[]> clocks_;
+  std::unique_ptr<double[]> opacities_;
+  LightRules light_rules_;
+  std::unique_ptr<PlacedLamp<M>[]> lamps_;
   double resolution_ = 0;
 };
 

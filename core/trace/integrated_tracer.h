@@ -27,7 +27,7 @@ class IntegratedTracer final : public Tracer {
 
   /// Makes the objects ready; false, with the reason, for the first that cannot be traced.
   bool place_objects(const Scene& scene, Unfit& unfit) {
-    unfit.object = Unfit::kObserver;
+    unfit.thing = Unfit::Thing::observer;
     unfit.reason =
         "stands where no observer of this frame can be; near and in a black hole, try \"frame\": \"normal\"";
     double sum = 0;
@@ -35,7 +35,8 @@ class IntegratedTracer final : public Tracer {
       for (const double component : e.c) sum += component;
     if (!std::isfinite(sum)) return false;
     for (std::size_t i = 0; i < rules_.objects; ++i) {
-      unfit.object = i;
+      unfit.thing = Unfit::Thing::object;
+      unfit.number = i;
       const Object& object = scene.objects[i];
       const auto number = static_cast<std::uint32_t>(i + 1);
       if (rules_.is_sky(number)) continue;
@@ -63,6 +64,7 @@ class IntegratedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
+  std::uint32_t object_about_lamp(std::size_t) const override { return 0; }
   double lamp_tau_origin(std::size_t) const override { return 0; }
   double distortion(std::size_t object) const override { return distortions_[object]; }
 

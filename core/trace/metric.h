@@ -65,6 +65,16 @@ struct Tetrad {
   }
 };
 
+/// Components in a tetrad of a vector that is given by its chart components.
+template <class S>
+Vec4<S> local_components(const Matrix4<S>& g, const Tetrad<S>& tetrad, const Vec4<S>& v) {
+  const Vec4<S> lower = g * v;
+  return Vec4<S>::map([&](std::size_t a) {
+    const S along = dot(lower, tetrad.e[a]);
+    return a == 0 ? along : -along;
+  });
+}
+
 /// A point of a path: chart coordinates, chart components of the tangent, and the tangent's components in the
 /// static tetrad there.
 template <class S>
@@ -119,8 +129,8 @@ constexpr bool is_stationary() {
 }
 
 /// A vector of the static tetrad, turned about e3 by e^{i angle}: what isometries do to it.
-template <class S>
-Vec4<S> turned_about_e3(const Complex<double>& turn, const Vec4<S>& k) {
+template <class S, class T>
+Vec4<S> turned_about_e3(const Complex<T>& turn, const Vec4<S>& k) {
   const Complex<S> w = Complex<S>{S(turn.re), S(turn.im)} * Complex<S>{k[1], k[2]};
   return {{k[0], w.re, w.im, k[3]}};
 }

@@ -58,6 +58,13 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
                         : "holds the observer; a sphere that is seen from inside needs \"dome\": true";
 }
 
+/// Whether an event, in the chart of the body, is inside of a shape that is seen from outside.
+template <class Body, class S>
+bool holds_event(const Body& body, const S& shape, const Vec4<double>& event) {
+  const double tau = local_time(body, event, body.first_guess(event));
+  return !shape.starts_inside() && shape.holds(body.local(event, tau).second);
+}
+
 template <class Object>
 Matrix3<double> axes_of(const Object& object) {
   return {Vec3<double>{object.axes[0]}, Vec3<double>{object.axes[1]}, Vec3<double>{object.axes[2]}};

@@ -53,36 +53,44 @@ struct RestPlacing {
       return out;
     }
   };
-  /// What all rays from one event have in common: the event in the object's chart (where a local object
-  /// stands at the origin), and how the tetrad turns.
+  /// What all rays from one event (or, for packs, from one event a lane) have in common: the event in the
+  /// object's chart (where a local object stands at the origin), and how the tetrad turns.
+  template <class S>
   struct Launch {
-    Vec4<double> start;
-    Complex<double> turn;
+    Vec4<S> start;
+    Complex<S> turn;
   };
-  Launch launch(const Vec4<double>& event) const {
-    if (!local) return {event, {1, 0}};
-    return {metric.to_origin(place, event), metric.turn(place, event)};
+  template <class S>
+  Launch<S> launch(const Vec4<S>& event) const {
+    if (!local) return {event, {S(1.0), S(0.0)}};
+    const auto at = convert<S>(place);
+    return {metric.to_origin(at, event), metric.turn(at, event)};
   }
   /// A quick sieve: false for rays that surely never meet the bounding ball.
   template <class S>
-  Mask<S> may_meet(const Launch& launch, const Vec4<S>& k) const {
+  Mask<S> may_meet(const Launch<double>& launch, const Vec4<S>& k) const {
     if (!local) return k[0] == k[0];
     using Guard = decltype(std::declval<Ray<S>>().guard);
     return Guard::may_meet(metric, launch.start, turned_about_e3(launch.turn, k), ball);
   }
   /// The path with past-directed tangent k (static tetrad) at the event, in the object's chart.
-  template <class S>
-  auto path(const Launch& launch, const Vec4<S>& k) const {
+  template <class S, class T>
+  auto path(const Launch<T>& launch, const Vec4<S>& k) const {
     return metric.path(convert<S>(launch.start), turned_about_e3(launch.turn, k));
   }
-  template <class S>
-  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
+  template <class S, class T>
+  Ray<S> ray(const Launch<T>& launch, const Vec4<S>& k) const {
     return {this, path(launch, k)};
   }
   /// The scene's coordinates of an event that is given in the object's chart.
   template <class S>
   Vec4<S> scene_event(const Vec4<S>& event) const {
     return local ? metric.from_origin(convert<S>(place), event) : event;
+  }
+  /// Components in the static tetrad of the scene's chart, of a vector that is given in that of the object's.
+  template <class S>
+  Vec4<S> scene_vector(const Vec4<S>& scene_event, const Vec4<S>& v) const {
+    return local ? turned_about_e3(conj(metric.turn(convert<S>(place), scene_event)), v) : v;
   }
 };
 
@@ -144,26 +152,34 @@ struct MovingPlacing {
       }
     }
   };
-  struct Launch {
-    Vec4<double> start;
-    decltype(std::declval<MovingPlacing>().orbit.launch(Vec4<double>{})) around;
-  };
-  Launch launch(const Vec4<double>& event) const { return {event, orbit.launch(event)}; }
   template <class S>
-  Mask<S> may_meet(const Launch&, const Vec4<S>& k) const {
+  struct Launch {
+    Vec4<S> start;
+    decltype(std::declval<MovingPlacing>().orbit.launch(Vec4<S>{})) around;
+  };
+  template <class S>
+  Launch<S> launch(const Vec4<S>& event) const {
+    return {event, orbit.launch(event)};
+  }
+  template <class S>
+  Mask<S> may_meet(const Launch<double>&, const Vec4<S>& k) const {
     return k[0] == k[0];
   }
-  template <class S>
-  auto path(const Launch& launch, const Vec4<S>& k) const {
+  template <class S, class T>
+  auto path(const Launch<T>& launch, const Vec4<S>& k) const {
     return frame.metric.path(convert<S>(launch.start), k);
   }
-  template <class S>
-  Ray<S> ray(const Launch& launch, const Vec4<S>& k) const {
+  template <class S, class T>
+  Ray<S> ray(const Launch<T>& launch, const Vec4<S>& k) const {
     return {this, path(launch, k), orbit.ray(launch.around, k)};
   }
   template <class S>
   Vec4<S> scene_event(const Vec4<S>& event) const {
     return event;
+  }
+  template <class S>
+  Vec4<S> scene_vector(const Vec4<S>&, const Vec4<S>& v) const {
+    return v;
   }
 };
 

@@ -15,12 +15,7 @@ struct StepPath {
   PathPoint<S> at(const S& delta) const {
     const State<S> here = stepper->move(*system, y, dy, delta);
     const Vec4<S> x = to_phase(here).x, k = to_phase(system->rate(here)).x;
-    const Matrix4<S> g = system->metric.g(x);
-    const Tetrad<S> tetrad = static_tetrad(system->metric, x);
-    const auto local = Vec4<S>::map([&](std::size_t a) {
-      const S along = inner(g, k, tetrad.e[a]);
-      return a == 0 ? along : -along;
-    });
+    const Vec4<S> local = local_components(system->metric.g(x), static_tetrad(system->metric, x), k);
     return {x, k, local};
   }
 };

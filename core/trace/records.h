@@ -26,6 +26,8 @@ struct Crossed {
   Matrix4<S> g;
   Vec4<S> u;        ///< the surface's 4-velocity
   S frequency;      ///< that it emits
+  Vec4<S> slope;    ///< change of the shape's function along the vectors of the static tetrad
+  S steepness;      ///< length of that gradient
   S rising;         ///< change of the shape's function along the ray, into the past
   Vec4<S> emitted;  ///< the event in the scene's chart
 };
@@ -58,6 +60,8 @@ Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, 
           g,
           (S(1.0) / length) * u,
           frequency,
+          slope,
+          steepness,
           rising,
           emitted};
 }
@@ -101,7 +105,17 @@ inline void sort_by_Z(const HitRoom& room, std::size_t from, std::size_t end) {
     for (std::size_t j = i; j > from && room.hits[j].Z < room.hits[j - 1].Z; --j) {
       std::swap(room.hits[j], room.hits[j - 1]);
       if (room.details) std::swap(room.details[j], room.details[j - 1]);
+      for (std::size_t k = 0; k < room.paths; ++k)
+        std::swap(room.lights[j * room.paths + k], room.lights[(j - 1) * room.paths + k]);
     }
+}
+
+/// Puts one record in the place of an earlier one.
+inline void move_record(const HitRoom& room, std::size_t from, std::size_t to) {
+  room.hits[to] = room.hits[from];
+  if (room.details) room.details[to] = room.details[from];
+  for (std::size_t k = 0; k < room.paths; ++k)
+    room.lights[to * room.paths + k] = room.lights[from * room.paths + k];
 }
 
 /// Of the records of one ray, sorted, keeps what the rules let through, from place `kept` on. A ray that
@@ -121,8 +135,7 @@ inline void keep_records(const RecordRules& rules, const HitRoom& room, std::siz
       if (status != Status::not_finite) status = Status::lookback_reached;
       return;
     }
-    if (room.details) room.details[kept] = room.details[i];
-    room.hits[kept++] = hit;
+    move_record(room, i, kept++);
     if (sky || !(rules.ends_rays(hit.id) || kept - first == rules.records.max_hits)) continue;
     if (status != Status::not_finite) status = Status::hit;
     return;

@@ -23,6 +23,12 @@ struct Sphere {
     return from_inside ? -f : f;
   }
 
+  /// Whether X is within it.
+  template <class S>
+  Mask<S> holds(const Vec3<S>& X) const {
+    return dot(X, X) < S(radius * radius);
+  }
+
   /// Whether an observer at X could not see out (or, for a dome, not in).
   bool hides(const Vec3<double>& X) const { return value(X) <= 0; }
 
@@ -133,6 +139,12 @@ struct Box {
   S value(const Vec3<S>& X) const {
     const auto at = face(plain(X));
     return S(at.side) * at.pick(X[0], X[1], X[2]) - at.pick(S(half_x), S(half_y), S(half_z));
+  }
+
+  /// Whether X is within it; nothing is within a rectangle.
+  template <class S>
+  Mask<S> holds(const Vec3<S>& X) const {
+    return (S(half_z) > S(0.0)) & (value(X) < S(0.0));
   }
 
   /// Whether an observer at X stands in the box, or in the rectangle itself.

@@ -72,17 +72,21 @@ class Tracer {
   /// By how much lengths within object number `object` (from 0) are off, relatively: its frame is right to
   /// first order where the spacetime has no rigid motions.
   virtual double distortion(std::size_t object) const = 0;
+  /// Number from 1 of an opaque object that holds lamp number `lamp` (from 0) at the time of the observation
+  /// and is not its body; 0: none.
+  virtual std::uint32_t object_about_lamp(std::size_t lamp) const = 0;
   /// Proper time that the channel `light.*.tau` of lamp number `lamp` (from 0) counts from.
   virtual double lamp_tau_origin(std::size_t lamp) const = 0;
 };
 
-/// Why an object, or the observer, cannot be traced; `limit` is the bounding radius that would do, where that
-/// helps.
+/// Why an object, a lamp, or the observer, cannot be traced; `limit` is the bounding radius that would do,
+/// where that helps.
 struct Unfit {
-  static constexpr std::size_t kObserver = SIZE_MAX;
-  std::size_t object;  ///< its number from 0, or kObserver
-  const char* reason;
-  double limit;
+  enum class Thing { object, lamp, observer };
+  Thing thing = Thing::object;
+  std::size_t number = 0;  ///< of the object or the lamp, from 0
+  const char* reason = nullptr;
+  double limit = 0;
 };
 
 /// A null geodesic from a lamp at rest to an event, as the observer at rest there sees it.

@@ -39,6 +39,7 @@ double thread_seconds() {
 void count_from_observation(Scene& scene) {
   const double now = std::exchange(scene.observer.event[0], 0.0);
   for (Object& object : scene.objects) object.placing.worldline.event[0] -= now;
+  for (Lamp& lamp : scene.lights.lamps) lamp.placing.worldline.event[0] -= now;
 }
 
 /// Takes bands in order, one at a time, and tells how far it has come. What is thrown is kept until the
@@ -101,7 +102,35 @@ double for_each_band(const Camera& camera, Lines lines, int threads, const Progr
   return 1e-9 * static_cast<double>(nanoseconds.load());
 }
 
+/// Tells of objects that are not small against the curvature.
+void note_distortions(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const double percent = 100 * tracer.distortion(i);
+    if (!(percent > 1)) continue;
+    std::array<char, 24> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %%", percent);
+    note(place + ": /objects/" + std::to_string(i) + ": note: '" + scene.objects[i].name +
+         "' is not small against the curvature: lengths in its frame are off by up to " + text.data());
+  }
+}
+
+/// Tells of lamps that objects shut in.
+void note_hidden_lamps(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note) {
+  for (std::size_t i = 0; i < scene.lights.lamps.size(); ++i) {
+    const std::uint32_t about = tracer.object_about_lamp(i);
+    if (about == 0) continue;
+    const std::string& object = scene.objects[about - 1].name;
+    note(place + ": /lights/lamps/" + std::to_string(i) + ": note: the lamp is inside of '" + object +
+         "', which shuts its light in; if it belongs to the lamp, say \"body\": \"" + object + "\"");
+  }
+}
+
 }  // namespace
+
+void note_doubts(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note) {
+  note_distortions(tracer, scene, place, note);
+  note_hidden_lamps(tracer, scene, place, note);
+}
 
 int bands_in_flight(int threads) {
   return 2 * (threads > 0 ? threads : tbb::this_task_arena::max_concurrency());
@@ -116,21 +145,14 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   Unfit unfit{};
   auto tracer = spacetime.prepare(parameters, sampled, unfit);
   if (tracer) return tracer;
-  if (unfit.object == Unfit::kObserver) throw InputError(place + ": /observer", unfit.reason);
-  std::string message = "'" + scene.objects[unfit.object].name + "' " + unfit.reason;
+  if (unfit.thing == Unfit::Thing::observer) throw InputError(place + ": /observer", unfit.reason);
+  const bool lamp = unfit.thing == Unfit::Thing::lamp;
+  std::string message = "'" +
+                        (lamp ? scene.lights.lamps[unfit.number].name : scene.objects[unfit.number].name) +
+                        "' " + unfit.reason;
   if (unfit.limit > 0) message += "; expected a radius below about " + std::to_string(unfit.limit);
-  throw InputError(place + ": /objects/" + std::to_string(unfit.object), message);
-}
-
-void note_distortions(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note) {
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const double percent = 100 * tracer.distortion(i);
-    if (!(percent > 1)) continue;
-    std::array<char, 24> text{};
-    std::snprintf(text.data(), text.size(), "%.1f %%", percent);
-    note(place + ": /objects/" + std::to_string(i) + ": note: '" + scene.objects[i].name +
-         "' is not small against the curvature: lengths in its frame are off by up to " + text.data());
-  }
+  throw InputError(place + (lamp ? ": /lights/lamps/" : ": /objects/") + std::to_string(unfit.number),
+                   message);
 }
 
 void check_memory(const Camera& camera, ChannelSet channels, int bands, std::uint64_t available,
@@ -172,7 +194,7 @@ Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& 
   const int all = (scene.camera.height + kBandLines - 1) / kBandLines;
   check_memory(scene.camera, scene.records.channels, all, available_memory(), place);
   const auto tracer = prepare_scene(spacetime, scene, place);
-  if (note) note_distortions(*tracer, scene, place, note);
+  if (note) note_doubts(*tracer, scene, place, note);
   Dataset dataset;
   dataset.manifest = describe(spacetime, scene, *tracer);
   dataset.hits.channels = dataset.manifest.channels;

@@ -28,8 +28,8 @@ struct TracedBand {
 /// the samples of the camera. Throws InputError (with the JSON pointer) for what the spacetime cannot hold.
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place);
 
-/// Tells of objects that are not small against the curvature.
-void note_distortions(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note);
+/// Tells of objects that are not small against the curvature, and of lamps that objects shut in.
+void note_doubts(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note);
 
 /// What a dataset of the whole picture says of itself before it is traced.
 Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& tracer);
