@@ -23,7 +23,7 @@ S let_past(const Placed<Placing, Body, Shape>& object, double opacity, const Lit
   if (!any(search.active)) return through;
   search.lambda = start;
   const Sight<S> first = ray.at(start);
-  auto inside = (first.clearance <= S(0.0)) & object.shape.holds(first.X);
+  Mask<S> inside = (first.clearance <= S(0.0)) & object.shape.holds(first.X);
   for (int sheet = 0; sheet < kMostSheets && any(search.active); ++sheet) {
     advance(ray, Onward<S, Shape>{object.shape, inside}, limit, lit.rounding, kSearchLimit, search);
     through = select(search.met, S(1 - opacity) * through, through);
@@ -35,12 +35,6 @@ S let_past(const Placed<Placing, Body, Shape>& object, double opacity, const Lit
     search.met = met & !met;
   }
   return select(search.active, S(0.0), through);
-}
-
-/// How far a ray has to go from its own surface before that can be told from meeting it.
-template <class S>
-S leaving(const LitPoint<S>& lit, const Connection<S>& c) {
-  return S(64.0) * lit.rounding / max(lit.steepness(c.past), S(1e-300));
 }
 
 NULLCONE_KERNEL_END

@@ -46,7 +46,7 @@ class ClosedTracer final : public Tracer {
         clocks_(new Clock[rules_.objects]),
         opacities_(new double[rules_.objects]),
         light_rules_(scene.lights),
-        lamps_(new PlacedLamp<M>[light_rules_.lamps]) {
+        lamps_(new PlacedLamp<LampLine<M>>[light_rules_.lamps]) {
     resolution_ = 4e-15 * norm(spatial(observation_));
   }
 
@@ -252,7 +252,7 @@ class ClosedTracer final : public Tracer {
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> opacities_;
   LightRules light_rules_;
-  std::unique_ptr<PlacedLamp<M>[]> lamps_;
+  std::unique_ptr<PlacedLamp<LampLine<M>>[]> lamps_;
   double resolution_ = 0;
 };
 

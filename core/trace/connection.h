@@ -22,6 +22,18 @@ struct Connection {
   Vec4<S> tangent;  ///< chart components of the past-directed tangent there
 };
 
+/// One lane of many.
+template <class S>
+Connection<double> lane_of(const Connection<S>& c, std::size_t lane) {
+  std::array<bool, Lanes<S>::count> found{};
+  Lanes<S>::store(c.found, found.data());
+  const auto of = [&](const S& x) { return Lanes<S>::get(x, lane); };
+  const auto of4 = [&](const Vec4<S>& v) {
+    return Vec4<double>::map([&](std::size_t i) { return of(v[i]); });
+  };
+  return {found[lane], of4(c.past), of(c.lambda), of(c.tau), of(c.det), of4(c.emitted), of4(c.tangent)};
+}
+
 /// The worldline of a lamp, or of one point of its shape: at rest in the static tetrad, or a point of a rigid
 /// body on a geodesic.
 template <Metric M>

@@ -46,6 +46,12 @@ inline void insert_light(const HitLight& light, HitLight* among, std::size_t pat
   among[place] = light;
 }
 
+/// How far a ray has to go from its own surface before that can be told from meeting it.
+template <class S>
+S leaving(const LitPoint<S>& lit, const Connection<S>& c) {
+  return S(64.0) * lit.rounding / max(lit.steepness(c.past), S(1e-300));
+}
+
 /// Where the lamps' light is written down, and how.
 struct LightRules {
   std::size_t lamps = 0, paths = 0;  ///< paths: a lamp
@@ -62,25 +68,31 @@ struct LightRules {
         shadows(lights.shadows) {}
 };
 
+/// What is written down of one path, in one lane of a pack.
+template <class S>
+HitLight mean_light(const PathLight<S>& sum, double t0, double tau0, std::size_t lane = 0) {
+  const double E = Lanes<S>::get(sum.E, lane);
+  const auto mean = [&](const S& weighted) { return Lanes<S>::get(weighted, lane) / E; };
+  return {E, mean(sum.shift), mean(sum.t) - t0, mean(sum.tau) - tau0};
+}
+
 /// Of a group of crossings, for lamp number `number`: the light of one path.
 template <class S, class Group>
 void scatter_light(const PathLight<S>& sum, const Group& group, std::size_t number, const LightRules& rules,
                    double t0, double tau0, const HitRoom& to) {
-  for (std::size_t lane = 0; lane < group.filled; ++lane) {
-    const double E = Lanes<S>::get(sum.E, lane);
-    const auto mean = [&](const S& weighted) { return Lanes<S>::get(weighted, lane) / E; };
-    insert_light({E, mean(sum.shift), mean(sum.t) - t0, mean(sum.tau) - tau0},
+  for (std::size_t lane = 0; lane < group.filled; ++lane)
+    insert_light(mean_light(sum, t0, tau0, lane),
                  to.lights + group.ray[lane] * to.paths + number * rules.paths, rules.paths);
-  }
 }
 
 /// All lamps, for a group of crossings. `let_through(connection, wanted, body)` as in add_light; `body`:
 /// number of the object that does not stand in the light.
 template <class S, HasConnections M, class Group, class LetThrough>
-void illuminate(const M& metric, const PlacedLamp<M>* lamps, const LightRules& rules, const LitPoint<S>& lit,
-                const Group& group, double t0, const LetThrough& let_through, const HitRoom& to) {
+void illuminate(const M& metric, const PlacedLamp<LampLine<M>>* lamps, const LightRules& rules,
+                const LitPoint<S>& lit, const Group& group, double t0, const LetThrough& let_through,
+                const HitRoom& to) {
   for (std::size_t number = 0; number < rules.lamps; ++number) {
-    const PlacedLamp<M>& lamp = lamps[number];
+    const PlacedLamp<LampLine<M>>& lamp = lamps[number];
     for (int branch = 0; branch < branches(metric, lamp.lines[0], rules.windings); ++branch) {
       PathLight<S> sum;
       for (std::size_t i = 0; i < lamp.count; ++i) {

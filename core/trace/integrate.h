@@ -65,20 +65,16 @@ S first_step(const M& metric, const State<S>& y, const State<S>& dy, double rtol
   return S(0.5 * part) * length_scale(metric, to_phase(y).x) / max(speed, S(1e-300));
 }
 
-/// Tries a step of length h. Errors of position are measured against the metric's length scale, those of
-/// momentum against the largest component; a step is accepted if all are below rtol (positions: plus atol),
-/// and all finite.
+/// Judges an attempt by the estimated error of its state. Errors of position are measured against the
+/// metric's length scale, those of momentum against the largest component; a step is accepted if all are
+/// below rtol (positions: plus atol), and all finite.
 template <class Stepper, Metric M, class S>
-NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& system,
-                                   const Accuracy& accuracy, const Flight<S>& from, const S& h) {
-  Attempt<S> out;
-  State<S> error;
-  out.h = h;
-  stepper.step(system, from.y, from.dy, h, out.y1, out.dy1, error);
+NULLCONE_INLINE void judge(const M& metric, const Accuracy& accuracy, const Flight<S>& from,
+                           const State<S>& error, Attempt<S>& out) {
   const auto largest = [](const State<S>& v, std::size_t first) {
     return max(max(abs(v[first]), abs(v[first + 1])), max(abs(v[first + 2]), abs(v[first + 3])));
   };
-  const S scale = length_scale(system.metric, to_phase(from.y).x);
+  const S scale = length_scale(metric, to_phase(from.y).x);
   const double rtol = Stepper::kEstimate * accuracy.rtol;
   const S allowed_x = S(Stepper::kEstimate * accuracy.atol) + S(rtol) * scale;
   const S allowed_p = S(rtol) * largest(from.y, 4);
@@ -93,6 +89,17 @@ NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& sy
   S root = sqrt(e);
   for (int i = 1; i < Stepper::kRoots; ++i) root = sqrt(root);
   out.factor = select(out.finite, max(S(kShrink), min(from.growth, S(kSafety) / root)), S(kShrink));
+}
+
+/// Tries a step of length h.
+template <class Stepper, Metric M, class S>
+NULLCONE_INLINE Attempt<S> attempt(Stepper& stepper, const HamiltonSystem<M>& system,
+                                   const Accuracy& accuracy, const Flight<S>& from, const S& h) {
+  Attempt<S> out;
+  State<S> error;
+  out.h = h;
+  stepper.step(system, from.y, from.dy, h, out.y1, out.dy1, error);
+  judge<Stepper>(system.metric, accuracy, from, error, out);
   return out;
 }
 
@@ -114,26 +121,26 @@ void learn(Flight<S>& flight, const Attempt<S>& a, const Mask<S>& active) {
   flight.error = select(active & a.accepted, flight.error + a.error, flight.error);
 }
 
-/// Calls f with a stepper of the integrator's type.
-template <class S, class F>
+/// Calls f with a stepper of the integrator's type, for states Y.
+template <class S, class Y = State<S>, class F>
 auto with_stepper(Integrator integrator, F&& f) {
   switch (integrator) {
     case Integrator::dopri5: {
-      DormandPrince5<S> stepper;
+      DormandPrince5<S, Y> stepper;
       return f(stepper);
     }
     case Integrator::verner65: {
-      Verner65<S> stepper;
+      Verner65<S, Y> stepper;
       return f(stepper);
     }
     case Integrator::fehlberg78: {
-      Fehlberg78<S> stepper;
+      Fehlberg78<S, Y> stepper;
       return f(stepper);
     }
     case Integrator::prince_dormand87:
       break;
   }
-  PrinceDormand87<S> stepper;
+  PrinceDormand87<S, Y> stepper;
   return f(stepper);
 }
 

@@ -44,7 +44,7 @@ class IntegratedTracer final : public Tracer {
           with_shape(object.shape, [&](const auto& shape) { return place(object, shape, number, unfit); });
       if (!placed) return false;
     }
-    return true;
+    return light_.place(setting_, scene, unfit);
   }
 
   void trace_band(int first_line, int lines, const BandRoom& room) const override {
@@ -64,8 +64,18 @@ class IntegratedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
-  std::uint32_t object_about_lamp(std::size_t) const override { return 0; }
-  double lamp_tau_origin(std::size_t) const override { return 0; }
+  std::uint64_t light_doubts() const override { return light_.lamps.doubts(); }
+  std::uint32_t object_about_lamp(std::size_t lamp) const override {
+    const Vec4<double> event = light_.lamps.event_at_observation(lamp);
+    for (std::size_t i = 0; i < setting_.count; ++i) {
+      const MarchObject<M>& object = setting_.objects[i];
+      const bool around = !object.starts_inside() && object.holds(event, Vec4<double>{{1, 0, 0, 0}});
+      if (around && !light_.lamps.is_body(lamp, object.number) && light_.shades.opacity(object.number) == 1)
+        return object.number;
+    }
+    return 0;
+  }
+  double lamp_tau_origin(std::size_t lamp) const override { return light_.lamps.tau_origin(lamp); }
   double distortion(std::size_t object) const override { return distortions_[object]; }
 
  private:
@@ -135,6 +145,7 @@ class IntegratedTracer final : public Tracer {
       for (std::size_t& ray : group.ray) ray -= first;
       const State<Wide> y = departure_.state(from.load_k(rays));
       group.store(Wide(kGrowth), flights.growth);
+      group.store(Wide(setting_.lookback), flights.limit);
       store(group, y, flights.y);
       const Vec3<Wide> axis =
           turning_axis(spatial(to_phase(y).x), spatial(to_phase(setting_.system.rate(y)).x));
@@ -161,8 +172,8 @@ class IntegratedTracer final : public Tracer {
   template <class Stepper>
   void write(Stepper& stepper, Flights& flights, const Pool<StepCrossing>& crossings, std::size_t first,
              const CameraRays& camera, const BandRoom& room) const {
-    const Recorder<Stepper, M> recorder{&stepper, &setting_, &departure_, &camera,
-                                        wanted_,  first,     &flights,    &crossings};
+    const Recorder<Stepper, M> recorder{&stepper, &setting_, &departure_, &camera, wanted_,
+                                        first,    &flights,  &crossings,  &light_};
     const auto record_objects = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
                                     const HitRoom& to) {
       std::size_t k = 0;
@@ -202,6 +213,7 @@ class IntegratedTracer final : public Tracer {
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> distortions_;
   MarchSetting<M> setting_;
+  Illuminator<M> light_;
 };
 
 NULLCONE_KERNEL_END

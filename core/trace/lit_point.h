@@ -22,6 +22,14 @@ struct LitPoint {
   S steepness(const Vec4<S>& past) const { return dot(normal, past); }
 };
 
+/// Stands for the placing of what is traced in the scene's own chart.
+struct InChart {
+  template <class S>
+  Vec4<S> scene_vector(const Vec4<S>&, const Vec4<S>& v) const {
+    return v;
+  }
+};
+
 /// Of crossings on a placing's paths.
 template <class S, Metric M, class Placing>
 LitPoint<S> lit_point(const M& metric, const Crossed<S>& crossed, const Placing& placing) {

@@ -166,6 +166,12 @@ struct MarchObject {
     return with_type(marched, [](const auto& object) { return object.shape.starts_inside(); });
   }
 
+  /// Whether an event, which something with this tangent passes, is within the object.
+  bool holds(const Vec4<double>& event, const Vec4<double>& tangent) const {
+    return with_type(
+        marched, [&](const auto& object) { return object.shape.holds(object.map.locate(event, tangent).X); });
+  }
+
   /// f(curve, shape), from evenly spaced states of a step.
   template <class S, std::size_t n, class F>
   decltype(auto) with_curve(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,

@@ -1,6 +1,8 @@
 // Writes the records of integrated rays.
 #pragma once
 
+#include "core/trace/integrated_lamps.h"
+#include "core/trace/integrated_shadow.h"
 #include "core/trace/neighbours.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -20,6 +22,21 @@ struct StepPath {
   }
 };
 
+/// The lamps of a scene, and what stands in their light.
+template <Metric M>
+struct Illuminator {
+  LightRules rules;
+  typename LampsOf<M>::Type lamps;
+  Shades<M> shades;
+
+  bool place(const MarchSetting<M>& setting, const Scene& scene, Unfit& unfit) {
+    rules = LightRules(scene.lights);
+    if (rules.lamps == 0) return true;
+    shades.place(setting, scene);
+    return lamps.place(setting.system.metric, scene, setting.objects, setting.count, unfit);
+  }
+};
+
 /// Writes the records of the crossings of a chunk of rays.
 template <class Stepper, Metric M>
 struct Recorder {
@@ -31,6 +48,7 @@ struct Recorder {
   std::size_t first;  ///< ray of the chunk within the band
   const Flights* flights;
   const Pool<StepCrossing>* crossings;
+  const Illuminator<M>* light;
 
   State<Wide> load_y(const Group<Wide>& group) const {
     return State<Wide>::map(
@@ -63,6 +81,7 @@ struct Recorder {
     crossed.record.order = order_of(group, spatial(crossed.emitted));
     const std::uint32_t number = (*crossings)[group.ray[0]].number;
     scatter(crossed.record, group, number, departure->observation[0], origin, to.hits);
+    if (to.lights) light_up(lit_point(setting->system.metric, crossed, InChart{}), group, number, to);
     if (!to.details || !wanted.any()) return;
 
     Detailed<Wide> detailed;
@@ -75,6 +94,14 @@ struct Recorder {
           change_of_uv(crossed, object.body, object.shape,
                        event_change(*stepper, *setting, *departure, beside(group), crossed.record.Z));
     scatter(detailed, group, to.details);
+  }
+
+  void light_up(const LitPoint<Wide>& lit, const Group<Wide>& group, std::uint32_t own,
+                const HitRoom& to) const {
+    const auto let_through = [&](const Connection<Wide>& c, const Mask<Wide>& asked, std::uint32_t body) {
+      return light->rules.shadows ? light->shades.let_through(*stepper, lit, c, asked, own, body) : Wide(1.0);
+    };
+    light->lamps.illuminate(light->rules, lit, group, own, departure->observation[0], let_through, to);
   }
 
   /// Of a group of rays that have escaped to one sky, whose Ending is `end`.

@@ -30,11 +30,11 @@ template <class S>
 using State = Vec<S, 8>;
 
 /// A tableau as Odeint's generic stepper takes it: a fusion vector of the rows of a, and the weights.
-template <class S, const auto& kTableau>
+template <class S, class Y, const auto& kTableau>
 struct GenericPair {
   static constexpr int kStages = kTableau.stages;
   using Stepper = boost::numeric::odeint::explicit_error_generic_rk<
-      kStages, kTableau.order, kTableau.order, kTableau.embedded_order, State<S>, S, State<S>, S,
+      kStages, kTableau.order, kTableau.order, kTableau.embedded_order, Y, S, Y, S,
       boost::numeric::odeint::array_algebra, boost::numeric::odeint::default_operations,
       boost::numeric::odeint::never_resizer>;
   template <int kRow>
@@ -58,70 +58,70 @@ struct GenericPair {
   }
 };
 
-// Each stepper takes one step of a pair of order kOrder. kRoots is how many square roots of the error
+// Each stepper takes one step, of a state Y (rays: State<S>), of a pair of order kOrder. kRoots is how many
+// square roots of the error
 // estimate make the factor of the next step: about 1/(embedded order + 1), by roots alone, so that the bits
 // are the same everywhere. kEstimate is how many times the estimate exceeds the error that is left at a ray's
 // end, as measured (docs/accuracy.md): so one tolerance means about one error, whatever the stepper.
-template <class S>
+template <class S, class Y = State<S>>
 struct DormandPrince5 {
   static constexpr int kOrder = 5, kRoots = 2;
   static constexpr double kEstimate = 1;
-  boost::numeric::odeint::runge_kutta_dopri5<State<S>, S, State<S>, S, boost::numeric::odeint::array_algebra,
+  boost::numeric::odeint::runge_kutta_dopri5<Y, S, Y, S, boost::numeric::odeint::array_algebra,
                                              boost::numeric::odeint::default_operations,
                                              boost::numeric::odeint::never_resizer>
       stepper;
 
   /// From y with rate dy over h to y1 with rate dy1; `error` is the estimated local error.
   template <class System>
-  void step(const System& system, const State<S>& y, const State<S>& dy, const S& h, State<S>& y1,
-            State<S>& dy1, State<S>& error) {
+  void step(const System& system, const Y& y, const Y& dy, const S& h, Y& y1, Y& dy1, Y& error) {
     stepper.do_step(system, y, dy, S(0.0), y1, dy1, h, error);
   }
   /// The same without the error and the rate at the end.
   template <class System>
-  State<S> move(const System& system, const State<S>& y, const State<S>& dy, const S& h) {
-    State<S> y1, dy1;
+  Y move(const System& system, const Y& y, const Y& dy, const S& h) {
+    Y y1, dy1;
     stepper.do_step(system, y, dy, S(0.0), y1, dy1, h);
     return y1;
   }
 };
 
-template <class S, class Stepper, int kOrder_, int kRoots_>
+template <class S, class Y, class Stepper, int kOrder_, int kRoots_>
 struct OdeintPair {
   static constexpr int kOrder = kOrder_, kRoots = kRoots_;
   Stepper stepper;
 
   template <class System>
-  void step(const System& system, const State<S>& y, const State<S>& dy, const S& h, State<S>& y1,
-            State<S>& dy1, State<S>& error) {
+  void step(const System& system, const Y& y, const Y& dy, const S& h, Y& y1, Y& dy1, Y& error) {
     stepper.do_step(system, y, dy, S(0.0), y1, h, error);
     system(y1, dy1, S(0.0));
   }
   template <class System>
-  State<S> move(const System& system, const State<S>& y, const State<S>& dy, const S& h) {
-    State<S> y1;
+  Y move(const System& system, const Y& y, const Y& dy, const S& h) {
+    Y y1;
     stepper.do_step(system, y, dy, S(0.0), y1, h);
     return y1;
   }
 };
 
-template <class S>
-using Fehlberg78Stepper = boost::numeric::odeint::runge_kutta_fehlberg78<
-    State<S>, S, State<S>, S, boost::numeric::odeint::array_algebra,
-    boost::numeric::odeint::default_operations, boost::numeric::odeint::never_resizer>;
-template <class S>
-struct Fehlberg78 : OdeintPair<S, Fehlberg78Stepper<S>, 8, 3> {
+template <class S, class Y>
+using Fehlberg78Stepper =
+    boost::numeric::odeint::runge_kutta_fehlberg78<Y, S, Y, S, boost::numeric::odeint::array_algebra,
+                                                   boost::numeric::odeint::default_operations,
+                                                   boost::numeric::odeint::never_resizer>;
+template <class S, class Y = State<S>>
+struct Fehlberg78 : OdeintPair<S, Y, Fehlberg78Stepper<S, Y>, 8, 3> {
   static constexpr double kEstimate = 1;
 };
-template <class S>
-struct Verner65 : OdeintPair<S, typename GenericPair<S, kVerner65>::Stepper, 6, 3> {
+template <class S, class Y = State<S>>
+struct Verner65 : OdeintPair<S, Y, typename GenericPair<S, Y, kVerner65>::Stepper, 6, 3> {
   static constexpr double kEstimate = 0.4;
-  Verner65() : Verner65::OdeintPair{GenericPair<S, kVerner65>::make()} {}
+  Verner65() : Verner65::OdeintPair{GenericPair<S, Y, kVerner65>::make()} {}
 };
-template <class S>
-struct PrinceDormand87 : OdeintPair<S, typename GenericPair<S, kPrinceDormand87>::Stepper, 8, 3> {
+template <class S, class Y = State<S>>
+struct PrinceDormand87 : OdeintPair<S, Y, typename GenericPair<S, Y, kPrinceDormand87>::Stepper, 8, 3> {
   static constexpr double kEstimate = 16;
-  PrinceDormand87() : PrinceDormand87::OdeintPair{GenericPair<S, kPrinceDormand87>::make()} {}
+  PrinceDormand87() : PrinceDormand87::OdeintPair{GenericPair<S, Y, kPrinceDormand87>::make()} {}
 };
 
 NULLCONE_KERNEL_END
