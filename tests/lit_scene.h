@@ -31,9 +31,9 @@ struct LightSink final : HitSink {
   const HitLight& light(std::size_t hit, std::size_t path = 0) const { return lights[hit * paths + path]; }
 };
 
-template <host::Metric M>
-LightSink lit(const M& metric, const Scene& scene) {
-  host::ClosedTracer<M> tracer(metric, scene);
+template <class Tracer, host::Metric M>
+LightSink lit_by(const M& metric, const Scene& scene) {
+  Tracer tracer(metric, scene);
   Unfit unfit{};
   if (!tracer.place_objects(scene, unfit)) throw InputError("scene", unfit.reason);
   LightSink out;
@@ -46,6 +46,11 @@ LightSink lit(const M& metric, const Scene& scene) {
     tracer.trace_band(line, lines, {out, rays});
   }
   return out;
+}
+
+template <host::Metric M>
+LightSink lit(const M& metric, const Scene& scene) {
+  return lit_by<host::ClosedTracer<M>>(metric, scene);
 }
 
 inline Camera camera(int width, int height, double fov) {
