@@ -90,8 +90,8 @@ class Flattener {
  private:
   void put_crossings(const Hits& hits, std::size_t pixels, FlatLines& out) const {
     const auto middle = static_cast<std::uint32_t>((samples_ - 1) / 2 * (samples_ + 1));
-    Hits seen;  // those that stand for a pixel, without gaps
-    seen.channels = out.hits.channels = hits.channels;
+    Hits seen = empty_like(hits);  // those that stand for a pixel, without gaps
+    out.hits = seen;
     for_each_channel([&](const ChannelInfo&, auto& column) { column.resize(pixels); }, out.hits);
     out.hits.Z.assign(pixels, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -157,8 +157,8 @@ Imf::Header flat_header(const Manifest& m, int ranks) {
                                Imf::Channel(channel.whole ? Imf::UINT : Imf::FLOAT));
   };
   for (const char* name : exr::kPreviewChannels) header.channels().insert(name, Imf::Channel(Imf::HALF));
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-    if (m.channels.has(i)) insert(kHitChannelInfo[i]);
+  const Hits shape = empty_hits(m);
+  for_each_channel([&](const ChannelInfo& channel, const auto&) { insert(channel); }, shape);
   for (const ChannelInfo& channel : kRayChannelInfo) insert(channel);
   for (int rank = 0; rank < ranks; ++rank)
     for (const bool share : {false, true})

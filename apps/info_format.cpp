@@ -24,6 +24,7 @@ Report format_table() {
   return {{"format", kNewestFormat},
           {"band_lines", kBandLines},
           {"hits", channel_list(kHitChannelInfo)},
+          {"light", channel_list(kLightChannelInfo)},
           {"rays", channel_list(kRayChannelInfo)},
           {"status", statuses}};
 }

@@ -38,12 +38,29 @@ Report ray_records(const Manifest& m, const Rays& rays, int x) {
   return out;
 }
 
+/// By lamp the paths along which light comes.
+Report light_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
+  Report out = Report::object();
+  auto path = hits.light.begin();
+  for (const ObjectEntry& lamp : m.lights) {
+    Report& paths = out[lamp.name] = Report::array();
+    for (int i = 0; i < m.light_paths; ++i, ++path)
+      if (path->E[k] != 0)
+        paths.push_back({{"E", number(path->E[k])},
+                         {"shift", number(path->shift[k])},
+                         {"t", number(path->t[k])},
+                         {"tau", number(path->tau[k])}});
+  }
+  return out;
+}
+
 /// Channels of a group with more than one become a list under its name; `id` becomes the object's name.
 Report hit_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
   Report out;
   for_each_channel(
       [&](const ChannelInfo& channel, const auto& column) {
         const std::string group(channel.group());
+        if (group == "light") return;  // below
         if (channel.name == "id") {
           const std::size_t id = hits.id[k];
           out["object"] =
@@ -55,6 +72,7 @@ Report hit_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
         }
       },
       hits);
+  if (!m.lights.empty()) out["lights"] = light_record(m, hits, k);
   return out;
 }
 

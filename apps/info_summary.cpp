@@ -1,4 +1,5 @@
 #include <array>
+#include <bit>
 #include <limits>
 
 #include "apps/info.h"
@@ -12,7 +13,14 @@ namespace {
 /// Counts and ranges of the crossings and endings that have passed by.
 class Counts {
  public:
-  explicit Counts(const Manifest& manifest) : manifest_(manifest), objects_(manifest.objects.size()) {}
+  explicit Counts(const Manifest& manifest) : manifest_(manifest), objects_(manifest.objects.size()) {
+    const Hits shape = empty_hits(manifest);
+    for_each_channel(
+        [&](const ChannelInfo& channel, const auto&) {
+          ranges_.push_back({std::string(channel.name), channel.whole, kNone, -kNone});
+        },
+        shape);
+  }
 
   void add(const Band& band) {
     const Hits& hits = band.hits;
@@ -24,21 +32,22 @@ class Counts {
     for (const std::uint32_t status : band.rays.status)
       if (status < status_.size()) ++status_[status];
     std::size_t range = 0;
-    for_each_channel([&](const ChannelInfo&, const auto& column) { widen(ranges_[range++], column); }, hits);
+    for_each_channel(
+        [&](const ChannelInfo&, const auto& column) {
+          ranges_[range].widen(column, lit(hits, range));
+          ++range;
+        },
+        hits);
   }
 
   Report crossings() const {
     Report ranges = Report::object();
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i) {
-      if (!manifest_.channels.has(i)) continue;
-      const auto [least, most] = ranges_[next++];
-      if (!(least <= most)) continue;
-      const bool whole = kHitChannelInfo[i].whole;
-      const auto value = [whole](double x) {
-        return whole ? Report(static_cast<std::uint32_t>(x)) : Report(x);
+    for (const Range& range : ranges_) {
+      if (!(range.least <= range.most)) continue;
+      const auto value = [&](double x) {
+        return range.whole ? Report(static_cast<std::uint32_t>(x)) : Report(x);
       };
-      ranges[std::string(kHitChannelInfo[i].name)] = {value(least), value(most)};
+      ranges[range.channel] = {value(range.least), value(range.most)};
     }
     return {{"count", crossings_}, {"max_per_pixel", most_}, {"ranges", ranges}};
   }
@@ -60,13 +69,28 @@ class Counts {
   }
 
  private:
-  /// Least and greatest finite value.
-  using Range = std::pair<double, double>;
-  static void widen(Range& range, const auto& column) {
-    for (const auto value : column) {
-      const auto x = static_cast<double>(value);
-      if (std::isfinite(x)) range = {std::min(range.first, x), std::max(range.second, x)};
+  /// Least and greatest finite value of a channel.
+  struct Range {
+    std::string channel;
+    bool whole;
+    double least, most;
+
+    /// `where`: only values count beside which this is not 0.
+    void widen(const auto& column, const std::vector<float>* where) {
+      for (std::size_t i = 0; i < column.size(); ++i) {
+        const auto x = static_cast<double>(column[i]);
+        if (std::isfinite(x) && (!where || (*where)[i] != 0))
+          least = std::min(least, x), most = std::max(most, x);
+      }
     }
+  };
+  /// The channel E beside number `channel`, where that tells of light which need not be there.
+  static const std::vector<float>* lit(const Hits& hits, std::size_t channel) {
+    constexpr std::size_t kEach = kLightChannelInfo.size();
+    const std::size_t first =
+        static_cast<std::size_t>(std::popcount(hits.channels.bits & ~ChannelSet::kLight));
+    if (channel < first || (channel - first) % kEach == 0) return nullptr;
+    return &hits.light[(channel - first) / kEach].E;
   }
 
   static constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -74,8 +98,15 @@ class Counts {
   std::uint64_t crossings_ = 0, most_ = 0;
   std::vector<std::uint64_t> objects_;
   std::array<std::uint64_t, kStatusNames.size()> status_{};
-  std::vector<Range> ranges_ = std::vector<Range>(kHitChannelInfo.size(), {kNone, -kNone});
+  std::vector<Range> ranges_;
 };
+
+Report lights(const Manifest& manifest) {
+  Report out = Report::array();
+  for (const ObjectEntry& lamp : manifest.lights)
+    out.push_back({{"name", lamp.name}, {"tau_origin", lamp.tau_origin}});
+  return out;
+}
 
 }  // namespace
 
@@ -99,10 +130,12 @@ Report summary(DatasetReader& reader, std::size_t worst) {
           {"metric", m.metric},
           {"metric_parameters", scene.is_object() && scene.contains("metric") ? scene["metric"] : Report()},
           {"setting", setting},
-          {"channels", channel_names(m.channels)},
+          {"channels", channel_names(empty_hits(m))},
           {"hits", counts.crossings()},
           {"status", counts.statuses()},
           {"objects", counts.objects()},
+          {"lights", lights(m)},
+          {"light_paths", m.light_paths},
           {"quality", quality.report()},
           {"payload", {{"hits", m.hits_sha256}, {"rays", m.rays_sha256}}},
           {"scene_sha256", m.scene_sha256},

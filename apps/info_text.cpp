@@ -115,17 +115,26 @@ void print_header(const Report& report) {
   print_table(rows, "  ");
 }
 
+/// Empty for pure numbers.
+std::string unit_of(const std::string& channel) {
+  const auto in = [](const auto& table, const std::string& name) {
+    const auto found = std::ranges::find(table, name, &ChannelInfo::name);
+    return found == table.end() || found->unit == "1" ? "" : std::string(found->unit);
+  };
+  return channel.starts_with("light.") ? in(kLightChannelInfo, channel.substr(channel.rfind('.') + 1))
+                                       : in(kHitChannelInfo, channel);
+}
+
 void print_channels(const Report& report) {
   std::vector<Row> rows = {{"name", "least", "greatest", "unit"}};
   const Report& ranges = report["hits"]["ranges"];
-  for (const ChannelInfo& channel : kHitChannelInfo) {
-    const std::string name(channel.name);
-    if (std::ranges::find(report["channels"], Report(name)) == report["channels"].end()) continue;
+  for (const std::string name : report["channels"]) {
     const bool any = ranges.contains(name);
-    rows.push_back({name, any ? words(ranges[name][0]) : "none", any ? words(ranges[name][1]) : "none",
-                    channel.unit == "1" ? "" : std::string(channel.unit)});
+    rows.push_back(
+        {name, any ? words(ranges[name][0]) : "none", any ? words(ranges[name][1]) : "none", unit_of(name)});
   }
-  heading("channels of the crossings, finite values");
+  heading(std::string("channels of the crossings, finite values") +
+          (report["lights"].empty() ? "" : "; shift, t and tau of light where any arrives"));
   print_table(rows, "  ");
 }
 
@@ -143,6 +152,22 @@ void print_quality(const Report& quality) {
   print_records(quality["worst"], "  ", "inf");
 }
 
+/// Crossings without their light, and light with the number of its crossing.
+std::pair<Report, Report> apart(Report hits) {
+  Report light = Report::array();
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].contains("lights")) continue;
+    for (const auto& [lamp, paths] : hits[i]["lights"].items())
+      for (std::size_t path = 0; path < paths.size(); ++path) {
+        Report row = {{"crossing", i}, {"lamp", lamp}, {"path", path}};
+        row.update(paths[path]);
+        light.push_back(row);
+      }
+    hits[i].erase("lights");
+  }
+  return {hits, light};
+}
+
 }  // namespace
 
 void print_summary(const std::string& path, const Report& report) {
@@ -150,6 +175,10 @@ void print_summary(const std::string& path, const Report& report) {
   print_header(report);
   heading("objects");
   print_records(report["objects"], "  ", "none");
+  if (!report["lights"].empty()) {
+    heading("lamps, " + words(report["light_paths"]) + " paths each");
+    print_records(report["lights"], "  ", "none");
+  }
   print_channels(report);
   print_quality(report["quality"]);
 }
@@ -158,7 +187,11 @@ void print_pixel(const Report& report) {
   std::cout << "pixel " << words(report["pixel"][0]) << "," << words(report["pixel"][1]) << '\n';
   print_records(report["rays"].is_array() ? report["rays"] : Report::array({report["rays"]}), "  ", "inf");
   heading(report["hits"].empty() ? "no crossings" : "crossings, nearest first");
-  print_records(report["hits"], "  ", "inf");
+  const auto [hits, light] = apart(report["hits"]);
+  print_records(hits, "  ", "inf");
+  if (light.empty()) return;
+  heading("light, by the number of the crossing from 0");
+  print_records(light, "  ", "inf");
 }
 
 }  // namespace nullcone

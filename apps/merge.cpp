@@ -26,8 +26,7 @@ std::vector<Window> read_windows(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     out.push_back({path, read_manifest(path)});
     const Manifest& manifest = out.back().manifest;
-    if (manifest.format != kNewestFormat)
-      throw InputError(path, "is of an older format, which has no windows");
+    if (manifest.format < 2) throw InputError(path, "is of an older format, which has no windows");
     if (manifest.partial())
       throw InputError(path, "was interrupted; go on with nullcone-trace --resume first");
     const std::string fault = difference(manifest, out.front().manifest);

@@ -53,7 +53,8 @@ int show_channel(const PostrenderOptions& options) {
     return 0;
   }
   // Step 2: its colours.
-  const pr::ColorScale scale = pr::choose_scale(choice.info, values, given);
+  pr::ColorScale scale = pr::choose_scale(choice.info, values, given);
+  scale.channel = choice.name;
   const pr::Image image = pr::false_color_picture(scale, choice.info, manifest, values);
   seconds.render = watch.lap();
   pr::write_picture(files.picture, image, options.bits);

@@ -104,7 +104,7 @@ int work(Options& options) {
   Scene scene = read_scene(text, source, metric_descriptions());
   const Spacetime& spacetime = find_spacetime(scene.metric, options.isa);
   const int threads = options.common.threads;
-  check_memory(scene.camera, scene.records.channels, bands_in_flight(threads), available_memory(), source);
+  check_memory(scene, bands_in_flight(threads), available_memory(), source);
   Talk talk(options.common.quiet);
   const auto tracer = prepare_scene(spacetime, scene, source);
   if (const Note note = talk.notes()) note_doubts(*tracer, scene, source, note);

@@ -57,8 +57,8 @@ std::string difference(const Manifest& a, const Manifest& b) {
   if (a.format != b.format) return other("format", std::to_string(a.format), std::to_string(b.format));
   if (a.setting != b.setting) return other("setting", a.setting, b.setting);
   if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.channels != b.channels ||
-      a.objects != b.objects)
-    return "has another size, or other channels or objects, though the scene is the same";
+      a.objects != b.objects || a.lights != b.lights || a.light_paths != b.light_paths)
+    return "has another size, or other channels, objects or lamps, though the scene is the same";
   return {};
 }
 

@@ -15,7 +15,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <bit>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -88,8 +87,7 @@ void each_picture(benchmark::internal::Benchmark* of) {
 }
 
 std::int64_t bytes_of(const Dataset& dataset) {
-  const auto hits =
-      dataset.hits.count() * static_cast<std::size_t>(std::popcount(dataset.hits.channels.bits));
+  const auto hits = dataset.hits.count() * channel_names(dataset.hits).size();
   const auto rays = dataset.pixels() * (kRayChannelInfo.size() + 2 + 1);  // preview, counts
   return static_cast<std::int64_t>(4 * (hits + rays));
 }

@@ -1,5 +1,6 @@
 #include "postrender/channel_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +19,17 @@ std::string all_names() {
   return out.substr(0, out.size() - 2);
 }
 
+/// Those of light from lamps, lamp by lamp.
+std::string light_names(const Manifest& manifest) {
+  std::string out;
+  const std::string last = std::to_string(manifest.light_paths - 1);
+  for (const ObjectEntry& lamp : manifest.lights)
+    for (const ChannelInfo& info : kLightChannelInfo)
+      out +=
+          ", light." + lamp.name + (last == "0" ? ".0." : ".<0 to " + last + ">.") + std::string(info.name);
+  return out;
+}
+
 template <class Column>
 std::vector<float> nearest(const Column& column, const Hits& hits) {
   std::vector<float> out(hits.offset.size() - 1, kNone);
@@ -25,6 +37,16 @@ std::vector<float> nearest(const Column& column, const Hits& hits) {
     if (hits.offset[pixel] < hits.offset[pixel + 1])
       out[pixel] = static_cast<float>(column[hits.offset[pixel]]);
   return out;
+}
+
+/// Leaves out what stands beside an E of 0.
+void hide_unlit(const std::string& name, const Hits& hits, std::vector<float>& values) {
+  for (const LightPath& path : hits.light) {
+    if (!name.starts_with(path.prefix) || name == path.prefix + "E") continue;
+    const std::vector<float> lit = nearest(path.E, hits);
+    for (std::size_t pixel = 0; pixel < values.size(); ++pixel)
+      if (lit[pixel] == 0) values[pixel] = kNone;
+  }
 }
 
 /// The greatest of the samples of each pixel; a sample that is not a number is worst.
@@ -44,20 +66,25 @@ std::vector<float> worst(const Column& column, const Manifest& manifest) {
 
 ChannelChoice find_channel(const std::string& name, const Manifest& manifest, const std::string& file) {
   for (const ChannelInfo& info : kRayChannelInfo)
-    if (info.name == name) return {info, true};
+    if (info.name == name) return {name, info, true};
   for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i) {
     if (kHitChannelInfo[i].name != name) continue;
     if (!manifest.channels.has(i))
       throw InputError(file, "has no channel '" + name + "'; trace with records.channels that include it");
-    return {kHitChannelInfo[i], false};
+    return {name, kHitChannelInfo[i]};
   }
-  throw InputError("--show", "unknown channel '" + printable(name, 40) + "'; expected one of " + all_names());
+  for (const std::string& light : channel_names(empty_hits(manifest, ChannelSet::of("light"))))
+    if (light == name)
+      return {name,
+              *std::ranges::find(kLightChannelInfo, name.substr(name.rfind('.') + 1), &ChannelInfo::name)};
+  throw InputError("--show", "unknown channel '" + printable(name, 40) + "'; expected one of " + all_names() +
+                                 light_names(manifest));
 }
 
 std::vector<float> channel_values(const ChannelChoice& choice, const Dataset& dataset) {
   std::vector<float> out;
   const auto pick = [&](const ChannelInfo& info, const auto& column, auto&& values) {
-    if (info.name == choice.info.name) out = values(column);
+    if (info.name == choice.name) out = values(column);
   };
   if (choice.of_rays) {
     for_each_channel(
@@ -71,6 +98,7 @@ std::vector<float> channel_values(const ChannelChoice& choice, const Dataset& da
           pick(info, column, [&](const auto& found) { return nearest(found, dataset.hits); });
         },
         dataset.hits);
+    hide_unlit(choice.name, dataset.hits, out);
   }
   return out;
 }

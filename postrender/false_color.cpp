@@ -126,7 +126,8 @@ double ColorScale::place(double value) const {
 ScaleKind scale_kind(const ChannelInfo& channel) {
   if (channel.name == "status" || channel.name == "id" || channel.name == "order")
     return ScaleKind::categories;
-  if (channel.name == "error" || channel.name == "drift") return ScaleKind::logarithmic;
+  if (channel.name == "error" || channel.name == "drift" || channel.name == "E")
+    return ScaleKind::logarithmic;
   return channel.name == "shift" ? ScaleKind::shift : ScaleKind::linear;
 }
 

@@ -8,7 +8,7 @@ import struct
 import subprocess
 import sys
 
-from dataset_tools import Checks, Tools, black_hole_scene, deep, flat, flat_scene, goedel_scene, headers, values
+from dataset_tools import Checks, Tools, black_hole_scene, deep, flat, flat_scene, goedel_scene, headers, lit_scene, values
 
 source = os.path.abspath(sys.argv[2])
 tools, checks = Tools(sys.argv[1]), Checks()
@@ -49,6 +49,12 @@ def compare_records(path, pixels):
         checks.same(len(found), len(told["hits"]), f"{path} {x},{y}: crossings")
         for sample, hit in zip(found, told["hits"]):
             expected = {}
+            for lamp, paths in hit.pop("lights", {}).items():
+                for i in range(report["light_paths"]):
+                    names_of = {key: f"light.{lamp}.{i}.{key}" for key in ("E", "shift", "t", "tau")}
+                    unlit = {"E": 0, **{key: sample[names_of[key]] for key in ("shift", "t", "tau")}}  # of no light nothing is told
+                    found_light = paths[i] if i < len(paths) else unlit
+                    expected.update({names_of[key]: value for key, value in found_light.items()})
             for key, value in hit.items():
                 expected.update(zip(GROUPS[key], value) if key in GROUPS else [(key, value)])
             sample = {key: value if math.isfinite(value) else None for key, value in sample.items()}
@@ -152,14 +158,17 @@ for text, expected in (("", 0), ("hello", 0x248bfa47), ("hello, world", 0x149bbb
 
 goedel, ball, hole = (tools.trace(goedel_scene(source, [66, 35]), "goedel.exr"), tools.trace(flat_scene([15, 21], 4), "ball.exr"),
                       tools.trace(black_hole_scene([24, 20]), "hole.exr"))
+lit = tools.trace(lit_scene([9, 13], 2), "lit.exr")
 tools.run("trace", "goedel.exr.json", "-q", "-o", "shard.exr", "--shard", "2/2")
 compare_records(goedel, [(x, 17) for x in range(0, 66, 3)])
 compare_records("shard.exr", [(x, y) for x in range(0, 66, 9) for y in (16, 17, 34)])
 compare_records(ball, [(x, y) for x in range(0, 15, 2) for y in range(0, 21, 3)])
+compare_records(lit, [(x, y) for x in range(0, 9, 2) for y in range(0, 13, 2)])
 compare_records(hole, [(x, y) for x in range(0, 24, 4) for y in range(0, 20, 4)])
 for path in (goedel, "shard.exr", hole):
     checks.same(compare_companion(path, "flat.exr"), 0, f"{path}: pixels with more than one object")
 checks.true(compare_companion(ball, "flat.exr") > 10, "no pixel of the sampled ball's edge is covered in part")
+compare_companion(lit, "lit_flat.exr")
 compare_metadata("flat.exr", ["glass", "ball", "stars"])
 compare_companion(ball, "flat.exr", 1, ["--ranks", "1"])
 checks.true(sum(compare_example(goedel, x, 17) for x in range(66)) > 5, "the example has seen no crossing")

@@ -18,22 +18,31 @@ namespace nullcone::test {
 
 namespace fs = std::filesystem;
 
+/// As long as a name may be.
+inline constexpr const char* kLongName = "a2345678901234567890123456789-_Z";
+
 /// A value in a channel's range that only exact storage keeps.
 inline float odd_value(const ChannelInfo& channel, std::size_t n) {
   const std::array within = {1e-45F, 0.1F, 0.99999994F, 1.0F, 0.0F, 0.3F},
                    positive = {1e-45F, 3.4e38F, 0.1F, INFINITY, 0.0F, 7.7F},
                    any = {1e-45F, -0.0F, 3.4e38F, 0.1F, -INFINITY, -1.7F};
+  if (channel.range == "finite") return n % 6 == 4 ? -3.4e38F : any[n % 6];
+  if (channel.range.ends_with(", finite"))
+    return n % 6 == 3 ? 2.5F : n % 6 == 4 && channel.range.starts_with("above 0") ? 0.7F : positive[n % 6];
   if (channel.range.ends_with(" to 1")) return within[n % 6];
   return channel.range == "from 0" ? positive[n % 6] : any[n % 6];
 }
 
-/// 6 x 4 pixels with 0 to 3 crossings each (or none), and values that only exact storage keeps.
+/// 6 x 4 pixels with 0 to 3 crossings each (or none), and values that only exact storage keeps; with light of
+/// two lamps along two paths each, if that is among the channels.
 inline Dataset sample(bool with_hits = true, ChannelSet channels = kDefaultChannels) {
   Dataset out;
   Manifest& m = out.manifest;
   m.set_size(6, 4);
   m.setting = R"({"camera":{"type":"sphere"}})";
-  out.hits.channels = m.channels = channels;
+  m.channels = channels;
+  if (channels.has("light")) m.set_lights({{"sun", 0.25}, {kLongName, -1e9}}, 2);
+  out.hits = empty_hits(m);
   m.scene = R"({"metric":{"name":"minkowski"}})";
   m.scene_sha256 = sha256(m.scene);
   m.metric = "minkowski";
@@ -85,8 +94,8 @@ class DatasetFile : public ::testing::Test {
     std::sort(out.begin(), out.end());
     return out;
   }
-  std::string whole_file() {
-    write(path, sample());
+  std::string whole_file(ChannelSet channels = kDefaultChannels) {
+    write(path, sample(true, channels));
     return slurp(path);
   }
   /// What reading these bytes complains about; empty if they give a dataset (which is then judged).

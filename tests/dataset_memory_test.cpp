@@ -62,21 +62,27 @@ TEST_F(Memory, IsLimitedByAGroupOfTheFirstVersion) {
 }
 
 TEST(MemoryCheck, RefusesWhatWouldNotFitIfEveryRayHitSomething) {
-  Camera camera;
-  camera.width = 8192, camera.height = 4096, camera.samples = 2;
+  Scene scene;
+  scene.camera.width = 8192, scene.camera.height = 4096, scene.camera.samples = 2;
   constexpr std::uint64_t kPixel = 8 + 16, kRay = 10 * 4 + 4 * 4;
   const std::uint64_t needed = 8192u * 3 * kBandLines * (kPixel + 4 * kRay);
   EXPECT_EQ(dataset_bytes(8192 * 3 * kBandLines, 4, kDefaultChannels), needed);
-  EXPECT_NO_THROW(check_memory(camera, kDefaultChannels, 3, needed, "scene.json"));
+  EXPECT_NO_THROW(check_memory(scene, 3, needed, "scene.json"));
   try {
-    check_memory(camera, kDefaultChannels, 3, needed - 1, "scene.json");
+    check_memory(scene, 3, needed - 1, "scene.json");
     ADD_FAILURE() << "not refused";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("scene.json: /camera/resolution: "), std::string::npos)
         << error.what();
   }
   const std::uint64_t all = 8192u * 4096 * (kPixel + 4 * kRay);
-  EXPECT_NO_THROW(check_memory(camera, kDefaultChannels, 10000, all, "scene.json"));
+  EXPECT_NO_THROW(check_memory(scene, 10000, all, "scene.json"));
+  // Three lamps of two paths: 96 bytes a crossing.
+  scene.lights.lamps.resize(3), scene.lights.paths = 2;
+  scene.records.channels = scene.records.channels | ChannelSet::of("light");
+  EXPECT_NO_THROW(check_memory(scene, 3, needed + 8192u * 3 * kBandLines * 4 * 96, "scene.json"));
+  EXPECT_THROW(check_memory(scene, 3, needed + 8192u * 3 * kBandLines * 4 * 96 - 1, "scene.json"),
+               InputError);
 }
 
 std::string four_bands() {

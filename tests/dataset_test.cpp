@@ -79,6 +79,7 @@ TEST(Verify, SeesAWrongShapeAndAForgedManifest) {
       [](Dataset& d) { d.hits.id[0] = 3, fingerprint(d); },
       [](Dataset& d) { std::swap(d.hits.Z[0], d.hits.Z[1]), fingerprint(d); },
       [](Dataset& d) { d.manifest.scene[5] = 'E'; },
+      [](Dataset& d) { d.hits.channels.bits &= ~ChannelSet::of("mu").bits, fingerprint(d); },
       [](Dataset& d) { d.manifest.scene_sha256[0] ^= 1; },
   };
   for (std::size_t i = 0; i < std::size(changes); ++i) {

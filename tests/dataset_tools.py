@@ -27,6 +27,13 @@ def flat_scene(resolution, samples):
             "objects": [glass, {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": at(0, 3, -0.1, 0)}, SKY]}
 
 
+def lit_scene(resolution, samples):
+    """The same in the light of a lamp behind the camera and of a sphere beside the ball, which is not there to be seen."""
+    lamp = lambda name, *event, **more: {"name": name, "worldline": {"type": "static", "event": list(event)}, **more}
+    return {**flat_scene(resolution, samples),
+            "lights": {"paths": 2, "lamps": [lamp("sun", 0, -1, 1, 1), lamp("bulb", 0, 2.5, -1, 0, shape={"type": "sphere", "radius": 0.1}, samples=4)]}}
+
+
 def black_hole_scene(resolution):
     """Integrated paths: errors and drifts that are not 0."""
     return {"metric": {"name": "kerr_schild", "spin": 0.9}, "observer": {"event": [0, 20, 0, 0]},

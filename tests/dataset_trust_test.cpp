@@ -20,7 +20,7 @@ std::string fault_of_file(const std::string& path) {
 }
 
 TEST_F(DatasetFile, EveryFlippedBitIsSeen) {
-  const std::string bytes = whole_file();
+  const std::string bytes = whole_file(kAllChannels);
   EXPECT_EQ(fault_of_file(path), "");
   std::mt19937_64 random(5);
   const std::string place = folder / "b.exr";
@@ -68,13 +68,27 @@ TEST(Format1, StaysReadable) {
   EXPECT_FALSE(verify(damaged).empty());
 }
 
+TEST(Format2, StaysReadableAndIsWrittenWhereThereAreNoLamps) {
+  const std::string path = std::string(NULLCONE_TEST_DATA) + "/format2.exr";
+  EXPECT_EQ(verify_file(path), std::vector<std::string>{});
+  const Dataset dataset = read_dataset(path);
+  EXPECT_EQ(dataset.manifest.format, 2);
+  EXPECT_EQ(dataset.hits.count(), 22u);
+  EXPECT_EQ(dataset.manifest.hits_sha256, "9c0218ebe538fff3229fb4b2a89e49502c588df949c2bf9986f6e253a7a5cf39");
+  EXPECT_EQ(dataset.manifest.rays_sha256, "9d97c146dae72d976023d2f4d75abed4e2357645fc36347e9b4b56dcf746f6ff");
+  EXPECT_EQ(*std::ranges::max_element(dataset.hits.P[0]), 2.3816463947296143F);
+  // What it was written from is written the same way again.
+  EXPECT_NE(slurp(path).find(manifest_to_json(dataset.manifest)), std::string::npos);
+  EXPECT_EQ(sample().manifest.format, 2);
+}
+
 /// The lines from `first` on as a window of their own.
 Dataset window(const Dataset& whole, int first, int lines) {
   Dataset out;
   out.manifest = whole.manifest;
   out.manifest.first_line = first;
   out.manifest.lines = out.manifest.traced_lines = lines;
-  out.hits.channels = whole.hits.channels;
+  out.hits = empty_like(whole.hits);
   out.append(whole.band(first, lines));
   fingerprint(out);
   return out;
@@ -101,6 +115,7 @@ TEST_F(DatasetFile, AWindowIsADatasetOfItsOwn) {
   EXPECT_EQ(last.hits.offset, whole.band(32, 8).hits.offset);
   EXPECT_EQ(last.rays.steps, whole.band(32, 8).rays.steps);
   EXPECT_EQ(last.hits.id, whole.band(32, 8).hits.id);
+  EXPECT_EQ(last.hits.light.at(3).tau, whole.band(32, 8).hits.light.at(3).tau);
 }
 
 TEST_F(DatasetFile, OnlyTheChannelsThatAreWantedAreRead) {
@@ -111,6 +126,7 @@ TEST_F(DatasetFile, OnlyTheChannelsThatAreWantedAreRead) {
   EXPECT_EQ(some.hits.id, whole.hits.id);
   EXPECT_EQ(some.hits.offset, whole.hits.offset);
   EXPECT_TRUE(some.hits.Z.empty());
+  EXPECT_TRUE(some.hits.light.empty());
   EXPECT_FALSE(some.hits.channels.has("t"));
 }
 
@@ -128,6 +144,7 @@ TEST_F(DatasetFile, APartialFileIsWholeAndSaysWhatIsMissing) {
   EXPECT_TRUE(found.manifest.partial());
   EXPECT_EQ(found.manifest.traced_lines, 16);
   EXPECT_EQ(found.hits.count(), whole.band(0, 16).hits.count());
+  EXPECT_EQ(found.hits.light.at(1).E, whole.band(0, 16).hits.light.at(1).E);
   EXPECT_EQ(found.rays.status[6 * 16 - 1], whole.rays.status[6 * 16 - 1]);
   EXPECT_EQ(found.rays.status[6 * 16], static_cast<std::uint32_t>(Status::not_traced));
 }

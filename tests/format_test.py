@@ -7,7 +7,7 @@ import re
 import struct
 import sys
 
-from dataset_tools import Checks, Tools, black_hole_scene, deep, flat, flat_scene, goedel_scene, headers
+from dataset_tools import Checks, Tools, black_hole_scene, deep, flat, flat_scene, goedel_scene, headers, lit_scene
 
 source = os.path.abspath(sys.argv[2])
 tools = Tools(sys.argv[1])
@@ -44,6 +44,7 @@ def compare_channels(part):
 
 
 compare_channels("hits")
+compare_channels("light")
 compare_channels("rays")
 statuses = doc["Channels of rays: status"]
 checks.same([(int(row[0]), row[1]) for row in statuses], list(enumerate(code["status"])), "statuses")
@@ -51,7 +52,7 @@ text = open(os.path.join(source, "docs", "format.md")).read()
 checks.same(int(re.search(r"version (\d+) of the format", text)[1]), code["format"], "version of the format")
 checks.same(int(re.search(r"bands of (\d+) scan lines", text)[1]), code["band_lines"], "scan lines of a band")
 
-KINDS = {"integer": int, "number": (int, float), "string": str, "list": list, "list of strings": list, "object": dict,
+KINDS = {"boolean": bool, "integer": int, "number": (int, float), "string": str, "list": list, "list of strings": list, "object": dict,
          "2 numbers": list, "3 numbers": list, "4 numbers": list, "number or string": (int, float, str)}
 
 
@@ -116,15 +117,17 @@ def fingerprints(path, manifest):
 
 
 files = [tools.trace(goedel_scene(source, [66, 18]), "goedel.exr"), tools.trace(flat_scene([14, 21], 3), "flat.exr"),
-         tools.trace(black_hole_scene([24, 20]), "hole.exr")]
+         tools.trace(black_hole_scene([24, 20]), "hole.exr"), tools.trace(lit_scene([7, 11], 2), "lit.exr")]
 everything, settings = [], []
 for path in files:
     manifest = json.loads(headers(path)[0]["nullconeManifest"][1])
     everything += [(key, value) for key, value in manifest.items()]
     everything += [(f"objects[].{key}", value) for entry in manifest["objects"] for key, value in entry.items()]
+    everything += [(f"lights[].{key}", value) for entry in manifest.get("lights", []) for key, value in entry.items()]
     settings += leaves({key: value for key, value in manifest["setting"].items() if value})
-    checks.same(manifest["channels"], [c["name"] for c in code["hits"] if c["name"] in manifest["channels"]], "order of channels")
-    checks.same(manifest["format"], code["format"], "format of a fresh file")
+    light = [f"light.{lamp['name']}.{n}.{c['name']}" for lamp in manifest.get("lights", []) for n in range(manifest["light_paths"]) for c in code["light"]]
+    checks.same(manifest["channels"], [c["name"] for c in code["hits"] if c["name"] in manifest["channels"]] + light, "order of channels")
+    checks.same(manifest["format"], 3 if path == "lit.exr" else 2, "format of a fresh file")
     checks.same(set(deep(path)[0].channelnames), set(manifest["channels"]), f"{path}: channels of the deep part")
     compare_attributes(path)
     hash_of_file(path)

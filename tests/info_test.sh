@@ -23,6 +23,8 @@ scene["camera"].update(resolution=[20, 18], samples=3)
 json.dump(scene, open("samples.json", "w"))
 scene["records"] = {"channels": ["shift"]}
 json.dump(scene, open("few.json", "w"))
+lamp = {"name": "sun", "worldline": {"type": "static", "event": [0, 0.1, 0.1, 0.2]}}
+json.dump(dict(scene, lights={"paths": 3, "lamps": [lamp]}), open("lit.json", "w"))
 scene["camera"].update(resolution=[4000, 2000], samples=1)
 json.dump(scene, open("large.json", "w"))
 at = lambda *event: {"type": "local", "worldline": {"type": "static", "event": event}}
@@ -32,7 +34,7 @@ hole = {"metric": {"name": "kerr_schild"}, "observer": {"event": [0, 20, 0, 0]},
                     {"name": "stars", "shape": {"type": "sky"}}]}
 json.dump(hole, open("hole.json", "w"))
 PYTHON
-for name in scene samples few hole; do run 0 "$trace" $name.json -q -o $name.exr; done
+for name in scene samples few lit hole; do run 0 "$trace" $name.json -q -o $name.exr; done
 run 0 "$trace" scene.json -q -o shard.exr --shard 2/3
 
 # Windows, samples, channels, setting.
@@ -50,6 +52,21 @@ expect "d['samples'] == 3 and sum(d['status'].values()) == 9 * 20 * 18 and 'samp
 run 0 "$info" few.exr --json --pixel 10,9
 expect "len(d['rays']) == 9 and [r['sample'] for r in d['rays']] == list(range(9))"
 expect "all(set(h) == {'Z', 'A', 'object', 'sample', 'shift'} for h in d['hits'])"
+
+# Lamps.
+run 0 "$info" lit.exr --verify
+run 0 "$info" lit.exr --json
+expect "d['format'] == 3 and d['light_paths'] == 3 and [set(lamp) for lamp in d['lights']] == [{'name', 'tau_origin'}] and d['lights'][0]['name'] == 'sun'"
+expect "[c for c in d['channels'] if c.startswith('light.')] == [f'light.sun.{i}.{c}' for i in range(3) for c in ('E', 'shift', 't', 'tau')]"
+expect "all(d['hits']['ranges'][f'light.sun.{i}.E'][0] >= 0 for i in range(3))"
+run 0 "$info" lit.exr --json --pixel 10,9
+expect "all(set(h['lights']) == {'sun'} and len(h['lights']['sun']) <= 3 for h in d['hits'])"
+run 0 "$info" lit.exr
+says '^lamps, 3 paths each$'
+says '^  sun +-?[0-9]'
+says '^  light.sun.2.E +[0-9].* 1/scene\^2$'
+run 0 "$info" few.exr --json
+expect "d['format'] == 2 and d['lights'] == [] and d['light_paths'] == 0"
 
 # The worst rays of a black hole.
 run 0 "$info" hole.exr --json
@@ -81,7 +98,7 @@ says '^worst rays$'
 run 0 "$info" hole.exr --pixel 0,0
 says '^  inf +1 +stars'
 grep -q '[{}"]' out && fault "JSON in what people read"
-for file in scene shard samples few hole; do
+for file in scene shard samples few lit hole; do
   run 0 "$info" $file.exr
   grep -nE '[{}"]| $|[^a-z]null[^a-z]' out && fault "$file.exr: JSON, or blanks at the end of a line, in what people read"
 done
@@ -162,6 +179,7 @@ refused 2 "flats/a.exr: is an OpenEXR file, but not a nullcone dataset" "$info" 
 refused 2 "not a nullcone dataset" "$info" --flat flats/a.exr -o b.exr
 run 0 "$info" --flat shard.exr -o flats/a.exr
 run 0 "$info" --flat few.exr -o flats/a.exr
+run 0 "$info" --flat lit.exr -o flats/a.exr
 lean "$info" --flat large.partial.exr -o flats/a.exr
 
 finish

@@ -53,7 +53,7 @@ TEST(IntegratedIllumination, is_that_of_closed_forms) {
   for (int n = 0; n < 12; ++n) {
     const double up = random.uniform(-0.3, 0.3), side = random.uniform(-0.4, 0.4);
     Scene scene = two_spheres({0, 1.0, 0, 0}, {0, 0.8, 0.5 * side, 0.45 * (up > 0 ? 1 : -1)},
-                              {0, 0.7, side, up > 0 ? 1 : -1});
+                              {0, 0.7, side, up > 0 ? 1.0 : -1.0});
     scene.max_lookback = 4;
     const Goedel metric{1.2};
     const LightSink closed = lit(metric, scene);

@@ -27,6 +27,8 @@ Dataset gathered(const Dataset& grid, int samples) {
   out.manifest.set_size(width, lines);
   out.manifest.samples = samples;
   out.manifest.objects = grid.manifest.objects;
+  out.manifest.set_lights(grid.manifest.lights, grid.manifest.light_paths);
+  out.hits = empty_like(grid.hits);
   out.hits.channels = out.manifest.channels = grid.hits.channels | ChannelSet::of("sample");
   for (int pixel = 0; pixel < width * lines; ++pixel) {
     std::vector<std::pair<std::size_t, std::uint32_t>> list;
@@ -63,6 +65,26 @@ Image white_picture(Dataset data, const PixelFilter& filter) {
   nlohmann::json look = nlohmann::json::parse(text_of(filter));
   look["objects"]["earth"]["texture"] = {{"type", "color"}, {"rgb", {1, 1, 1}}};
   return picture(std::move(data), look.dump());
+}
+
+TEST(Samples, keep_their_light) {
+  Dataset grid = make_dataset(6, 4, {{"earth"}}, [](int column, int row) {
+    return std::vector<TestHit>(static_cast<std::size_t>(column + 2 * row) % 3);
+  });
+  grid.manifest.set_lights({{"sun", 0}, {"moon", 0}}, 1);
+  set_lamps(grid.hits, {"sun", "moon"}, 1);
+  for (std::size_t k = 0; k < grid.hits.count(); ++k)
+    for (LightPath& path : grid.hits.light) {
+      const auto value = static_cast<float>(2 * k + path.prefix.size());
+      path.E.push_back(value), path.shift.push_back(1 + value), path.t.push_back(-value);
+      path.tau.push_back(value / 2);
+    }
+  const Dataset together = gathered(grid, 2), apart = by_samples(together);
+  EXPECT_NE(together.hits.light[0].E, grid.hits.light[0].E);
+  for (const std::size_t lamp : {0u, 1u}) {
+    EXPECT_EQ(apart.hits.light[lamp].E, grid.hits.light[lamp].E);
+    EXPECT_EQ(apart.hits.light[lamp].tau, grid.hits.light[lamp].tau);
+  }
 }
 
 TEST(PixelFilters, have_their_closed_forms) {

@@ -88,6 +88,49 @@ TEST(ChannelValues, that_there_are_not_are_refused) {
     EXPECT_NE(about(name).find("expected one of status, steps"), std::string::npos) << about(name);
 }
 
+/// Two pixels; light of the lamp "sun" reaches the first along one of two paths, the second not at all.
+Dataset two_lit_pixels() {
+  Dataset data = make_dataset(2, 1, {{"earth"}}, [](int, int) { return std::vector<TestHit>(1); });
+  data.manifest.set_lights({{"sun", 0}}, 2);
+  set_lamps(data.hits, {"sun"}, 2);
+  data.hits.light[0] = {data.hits.light[0].prefix, {3, 0}, {0.5f, 1}, {-2, 0}, {-1, 0}};
+  data.hits.light[1] = {data.hits.light[1].prefix, {0, 0}, {1, 1}, {0, 0}, {0, 0}};
+  return data;
+}
+
+TEST(ChannelValues, of_light_are_those_of_lamp_and_path) {
+  const Dataset data = two_lit_pixels();
+  EXPECT_EQ(values_of("light.sun.0.E", data), (std::vector<float>{3, 0}));
+  EXPECT_EQ(values_of("light.sun.1.E", data), (std::vector<float>{0, 0}));
+  const std::vector<float> shift = values_of("light.sun.0.shift", data), t = values_of("light.sun.0.t", data);
+  EXPECT_EQ(shift[0], 0.5f);
+  EXPECT_TRUE(std::isnan(shift[1]));  // no light that it could be the shift of
+  EXPECT_EQ(t[0], -2.0f);
+  EXPECT_TRUE(std::isnan(values_of("light.sun.1.tau", data)[0]));
+  const ChannelChoice choice = find_channel("light.sun.1.tau", data.manifest, "a.exr");
+  EXPECT_EQ(choice.wanted(), ChannelSet::of("light"));
+  EXPECT_EQ(choice.name, "light.sun.1.tau");
+  EXPECT_EQ(choice.info.name, "tau");
+}
+
+TEST(ChannelValues, of_light_that_there_are_not_are_refused) {
+  const Manifest lit = two_lit_pixels().manifest, dark = one_pixel({{}}).manifest;
+  const auto about = [](const char* name, const Manifest& manifest) {
+    return complaint([&] { find_channel(name, manifest, "a.exr"); });
+  };
+  for (const char* name : {"light.sun.2.E", "light.sun.0.F", "light.moon.0.E", "light", "light.sun.0.", "E"})
+    EXPECT_NE(about(name, lit).find("light.sun.<0 to 1>.E, light.sun.<0 to 1>.shift"), std::string::npos)
+        << name;
+  EXPECT_NE(about("light.sun.0.E", dark).find("expected one of status, steps"), std::string::npos);
+  EXPECT_EQ(about("light.sun.0.E", dark).find("light.sun.<"), std::string::npos);
+}
+
+TEST(ColorScales, of_light_are_logarithmic_or_those_of_the_channel) {
+  EXPECT_EQ(scale_kind(kLightChannelInfo[0]), ScaleKind::logarithmic);
+  EXPECT_EQ(scale_kind(kLightChannelInfo[1]), ScaleKind::shift);
+  EXPECT_EQ(scale_kind(kLightChannelInfo[2]), ScaleKind::linear);
+}
+
 ColorScale scale_of(const char* channel, const std::vector<float>& values, std::optional<Range> range = {}) {
   return choose_scale(info(channel), values, range);
 }

@@ -130,7 +130,7 @@ TEST(Scene, NamesAreCheckedAndTakenOnce) {
   for (const char* name :
        {"", "1st", "_x", "a b", "a.b", "a/b", "\xc3\xa4rth", "a\n", "a23456789012345678901234567890123"})
     expect_refused(with("/objects/2/name", name), "file: /objects/2/name: ", "expected a letter");
-  expect_refused(with("/objects/2/name", "earth"), "file: /objects/2/name: ", "names two objects");
+  expect_refused(with("/objects/2/name", "earth"), "file: /objects/2/name: ", "names two of them");
   EXPECT_EQ(complaint(with("/objects/2/name", "a2345678901234567890123456789-_Z")), "");
 }
 

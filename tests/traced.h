@@ -42,7 +42,7 @@ inline Traced trace_text(const std::string& text, int threads = 0) {
   const auto metrics = metric_descriptions();
   Traced out{read_scene(text, "test", metrics), {}};
   const auto tracer = prepare_scene(find_spacetime(out.scene.metric), out.scene, "test");
-  out.bands = trace_exactly(*tracer, out.scene.camera, threads);
+  out.bands = trace_exactly(*tracer, out.scene, threads);
   return out;
 }
 

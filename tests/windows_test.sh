@@ -18,7 +18,8 @@ PYTHON
 payload() { "$info" "$1" --json | python3 -c 'import json, sys; d = json.load(sys.stdin); print(d["payload"])'; }
 same_payload() { checks=$((checks + 1)); [ "$(payload "$1")" = "$(payload "$2")" ] || fault "$1 and $2 have other records"; }
 
-scene a.json 264 120 's["camera"]["samples"] = 2; s["records"] = {"channels": ["uv", "shift", "t"]}'
+scene a.json 264 120 's["camera"]["samples"] = 2; s["records"] = {"channels": ["uv", "shift", "t"]}
+s["lights"] = {"lamps": [{"name": "sun", "worldline": {"type": "static", "event": [0, 0.1, 0.1, 0.2]}}]}'
 run 0 "$trace" -q a.json -o a.exr
 
 # Shards: any number of them, in any order.
@@ -50,6 +51,7 @@ refused_with 2 "overlaps" "$merge" -q s1.exr s2.exr s3.exr s2.exr -o x.exr
 scene b.json 264 120 's["camera"]["samples"] = 2; s["observer"]["event"][0] = 1.5'
 run 0 "$trace" -q b.json --shard 2/3 -o stranger.exr
 refused_with 2 "stranger.exr: has another scene" "$merge" -q s1.exr stranger.exr s3.exr -o x.exr
+refused_with 2 "format2.exr: has another scene" "$merge" -q s1.exr "$source_dir/tests/data/format2.exr" s3.exr -o x.exr
 refused_with 2 "format1.exr: is of an older format" "$merge" -q s1.exr "$source_dir/tests/data/format1.exr" -o x.exr
 python3 -c "
 b = bytearray(open('s2.exr', 'rb').read())

@@ -54,15 +54,16 @@ inline constexpr std::array kHitChannelInfo = {
 /// light.<lamp>.<path>.<name>, behind all others, lamp by lamp and path by path (from 0, the brightest
 /// first).
 inline constexpr std::array kLightChannelInfo = {
-    ChannelInfo{"E", false, "1/scene^2", "from 0",
+    ChannelInfo{"E", false, "1/scene^2", "from 0, finite",
                 "irradiance of a lamp of intensity 1 without its powers of g: cos(alpha)/|det D| times what "
                 "gets through; "
                 "0: no such path, or in shadow",
                 3},
-    ChannelInfo{"shift", false, "1", "from 0", "frequency ratio g = at the surface / emitted by the lamp", 3},
-    ChannelInfo{"t", false, "scene", "any",
+    ChannelInfo{"shift", false, "1", "above 0, finite",
+                "frequency ratio g = at the surface / emitted by the lamp", 3},
+    ChannelInfo{"t", false, "scene", "finite",
                 "coordinate time at which the lamp emitted minus that of observation", 3},
-    ChannelInfo{"tau", false, "scene", "any",
+    ChannelInfo{"tau", false, "scene", "finite",
                 "the lamp's proper time then, minus its tau_origin in the manifest", 3},
 };
 

@@ -138,7 +138,7 @@ std::string JsonObject::name(std::string_view key, std::set<std::string>& taken)
   if (!fits)
     refuse(key,
            "expected a letter and up to 31 letters, digits, '_' or '-', found '" + printable(name, 40) + "'");
-  if (!taken.insert(name).second) refuse(key, "'" + name + "' names two objects; expected different names");
+  if (!taken.insert(name).second) refuse(key, "'" + name + "' names two of them; expected different names");
   return name;
 }
 

@@ -23,13 +23,23 @@ constexpr auto kExtend = [](const ChannelInfo&, auto& to, const auto& from) {
 
 }  // namespace
 
+Hits empty_hits(const Manifest& manifest, ChannelSet wanted) {
+  Hits out;
+  out.channels = manifest.channels & wanted;
+  if (!out.channels.has("light")) return out;
+  std::vector<std::string> lamps;
+  for (const ObjectEntry& lamp : manifest.lights) lamps.push_back(lamp.name);
+  set_lamps(out, lamps, manifest.light_paths);
+  return out;
+}
+
 Band Dataset::band(int first, int count) const {
   const std::size_t width = static_cast<std::size_t>(manifest.width),
                     begin = width * static_cast<std::size_t>(first);
   const std::size_t samples =
       static_cast<std::size_t>(manifest.samples) * static_cast<std::size_t>(manifest.samples);
   Band out;
-  out.hits.channels = hits.channels;
+  out.hits = empty_like(hits);
   out.hits.offset = part(hits.offset, begin, width * static_cast<std::size_t>(count) + 1);
   const std::uint64_t at = out.hits.offset.front(), crossings = out.hits.offset.back() - at;
   for (std::uint64_t& offset : out.hits.offset) offset -= at;

@@ -19,11 +19,11 @@ struct ObjectEntry {
   bool operator==(const ObjectEntry&) const = default;
 };
 
-inline constexpr int kNewestFormat = 2;
+inline constexpr int kNewestFormat = 3;
 
 /// How a dataset came to be; stored as JSON in the header of the file.
 struct Manifest {
-  int format = kNewestFormat;     ///< version of the file format
+  int format = 2;                 ///< version of the file format: the least that holds the content
   int width = 0, height = 0;      ///< of the whole picture, in pixels
   int first_line = 0, lines = 0;  ///< the window of the picture that is here: scan lines, all of each
   int traced_lines = 0;           ///< of the window; fewer than `lines` where tracing was interrupted
@@ -35,12 +35,20 @@ struct Manifest {
   std::string
       setting;  ///< JSON: metric_parameters, camera, observation, paths, as they were with all defaults
   std::vector<ObjectEntry> objects;
-  std::vector<ObjectEntry> lights = {};  ///< lamps whose light is recorded
+  std::vector<ObjectEntry> lights = {};  ///< lamps whose light is recorded; see set_lights()
   int light_paths = 0;                   ///< paths a lamp; 0 without lamps
   std::string version, isa, host;
   double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
   std::string hits_sha256, rays_sha256;  ///< see PayloadHash
 
+  /// Light that is recorded, where there are lamps: that takes format 3.
+  void set_lights(std::vector<ObjectEntry> lamps, int paths) {
+    if (lamps.empty()) return;
+    lights = std::move(lamps);
+    light_paths = paths;
+    channels = channels | ChannelSet::of("light");
+    format = 3;
+  }
   /// A whole picture.
   void set_size(int w, int h) {
     width = w;
@@ -52,6 +60,9 @@ struct Manifest {
   }
   bool partial() const { return traced_lines < lines; }
 };
+
+/// Empty columns for those of the manifest's channels that are `wanted`.
+Hits empty_hits(const Manifest& manifest, ChannelSet wanted = kAllChannels);
 
 /// The bands of a window, in order: f(first, lines), where `first` counts within the window.
 template <class F>

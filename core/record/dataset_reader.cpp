@@ -86,8 +86,8 @@ struct DatasetReader::Impl {
   std::string path;
   std::unique_ptr<Imf::MultiPartInputFile> file;
   Manifest manifest;
-  std::uint64_t size;
-  ChannelSet channels;
+  std::uint64_t size, crossing;  ///< bytes of the file, and of a crossing in it
+  Hits shape;                    ///< what is read
   std::unique_ptr<Imf::DeepScanLineInputPart> hits;
   std::unique_ptr<Imf::InputPart> rays;
   std::unique_ptr<exr::DeepLine> line;
@@ -96,12 +96,15 @@ struct DatasetReader::Impl {
     guarded(path, [&] {
       manifest = manifest_of(*file, path);
       size = std::filesystem::file_size(path);
-      channels = manifest.channels & (wanted | ChannelSet::of("id"));  // OpenEXR wants something to read
+      shape = empty_hits(manifest, wanted | ChannelSet::of("id"));  // OpenEXR wants something to read
       const int deep = find_part(*file, exr::hits_part, path), flat = find_part(*file, exr::rays_part, path);
       check_window(file->header(deep), exr::window_of(manifest, 0, manifest.lines), path);
       check_window(file->header(flat), exr::window_of(manifest, 0, manifest.lines, manifest.samples), path);
-      for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-        if (manifest.channels.has(i)) check_channel(file->header(deep), kHitChannelInfo[i], path);
+      const Hits all = empty_hits(manifest);
+      crossing = sizeof(float) * channel_names(all).size();
+      for_each_channel(
+          [&](const ChannelInfo& channel, const auto&) { check_channel(file->header(deep), channel, path); },
+          all);
       for (const ChannelInfo& channel : kRayChannelInfo) check_channel(file->header(flat), channel, path);
       if (file->header(deep).compression() != Imf::NO_COMPRESSION)
         throw InputError(path, "the part 'hits' is compressed; expected it plain");
@@ -109,7 +112,7 @@ struct DatasetReader::Impl {
       check_length(path, size, manifest.rays() * sizeof(float), kDeflated);
       hits = std::make_unique<Imf::DeepScanLineInputPart>(*file, deep);
       rays = std::make_unique<Imf::InputPart>(*file, flat);
-      line = std::make_unique<exr::DeepLine>(channels, manifest.width);
+      line = std::make_unique<exr::DeepLine>(shape, manifest.width);
       hits->setFrameBuffer(line->buffer());
     });
   }
@@ -121,7 +124,7 @@ struct DatasetReader::Impl {
       const std::size_t begin = to.offset.size() - 1;
       std::uint64_t count = to.count();
       for (const unsigned n : line->counts()) to.offset.push_back(count += n);
-      check_length(path, size, (count - to.offset[begin]) * sizeof(float), kPlain);
+      check_length(path, size, (count - to.offset[begin]) * crossing, kPlain);
       for_each_channel([&](const ChannelInfo&, auto& column) { column.resize(count); }, to);
       line->aim(to, begin);
       hits->readPixels(y);
@@ -153,7 +156,7 @@ const Manifest& DatasetReader::manifest() const { return impl_->manifest; }
 
 Band DatasetReader::band(int first, int lines) {
   Band out;
-  out.hits.channels = impl_->channels;
+  out.hits = impl_->shape;
   guarded(impl_->path, [&] { impl_->read(first, lines, out.hits, &out.rays); });
   return out;
 }
@@ -167,7 +170,7 @@ Dataset read_dataset(const std::string& path, ChannelSet wanted, bool with_rays)
 }
 
 void DatasetReader::read_all(Dataset& out, bool with_rays) {
-  out.hits.channels = impl_->channels;
+  out.hits = impl_->shape;
   // Room for one crossing a pixel; pages that are never touched cost nothing.
   out.hits.offset.reserve(out.pixels() + 1);
   for_each_channel([&](const ChannelInfo&, auto& column) { column.reserve(out.pixels()); }, out.hits);

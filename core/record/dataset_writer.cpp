@@ -48,12 +48,18 @@ struct DatasetWriter::Impl {
   std::string path, text;
   WholeFile whole;
   std::unique_ptr<Parts> parts;
+  Hits shape;
   exr::DeepLine line;
   PayloadHash hash;
   int lines = 0;
 
   Impl(const std::string& to, const Manifest& from)
-      : manifest(from), path(to), text(reserved_text(from)), whole(to), line(from.channels, from.width) {
+      : manifest(from),
+        path(to),
+        text(reserved_text(from)),
+        whole(to),
+        shape(empty_hits(from)),
+        line(shape, from.width) {
     exr::guard_writing(path, [&] {
       parts = std::make_unique<Parts>(whole.stream(), path, exr::make_headers(manifest, text));
       parts->hits.setFrameBuffer(line.buffer());
@@ -69,7 +75,7 @@ struct DatasetWriter::Impl {
   void add(const Band& band, const Preview& preview) {
     const auto width = static_cast<std::size_t>(manifest.width);
     const int count = static_cast<int>((band.hits.offset.size() - 1) / width);
-    if (band.hits.channels != manifest.channels ||
+    if (channel_names(band.hits) != channel_names(shape) ||
         preview.size() != 4 * width * static_cast<std::size_t>(count) ||
         count != std::min(kBandLines, manifest.lines - lines))
       throw std::invalid_argument("a band does not fit the dataset");
@@ -159,7 +165,7 @@ void DatasetWriter::finish_partial(const std::string& path, double core_seconds,
       const std::size_t pixels = static_cast<std::size_t>(manifest.width) * static_cast<std::size_t>(count);
       const std::size_t rays = pixels * static_cast<std::size_t>(manifest.samples * manifest.samples);
       Band nothing;
-      nothing.hits.channels = manifest.channels;
+      nothing.hits = impl_->shape;
       nothing.hits.offset.assign(pixels + 1, 0);
       nothing.rays = {std::vector<std::uint32_t>(rays, static_cast<std::uint32_t>(Status::not_traced)),
                       std::vector<std::uint32_t>(rays), std::vector<float>(rays), std::vector<float>(rays)};

@@ -37,10 +37,12 @@ std::vector<Imf::Header> make_headers(const Manifest& manifest, const std::strin
 
   Imf::Header hits = part_header(manifest, hits_part, Imf::DEEPSCANLINE, Imf::NO_COMPRESSION);
   Imf::addDeepImageState(hits, Imf::DIS_SORTED);
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-    if (manifest.channels.has(i))
-      hits.channels().insert(std::string(kHitChannelInfo[i].name),
-                             Imf::Channel(pixel_type(kHitChannelInfo[i])));
+  const Hits shape = empty_hits(manifest);
+  for_each_channel(
+      [&](const ChannelInfo& channel, const auto&) {
+        hits.channels().insert(std::string(channel.name), Imf::Channel(pixel_type(channel)));
+      },
+      shape);
 
   Imf::Header rays =
       part_header(manifest, rays_part, Imf::SCANLINEIMAGE, Imf::ZIP_COMPRESSION, manifest.samples);
@@ -49,17 +51,17 @@ std::vector<Imf::Header> make_headers(const Manifest& manifest, const std::strin
   return {preview, hits, rays};
 }
 
-DeepLine::DeepLine(ChannelSet channels, int width) : counts_(static_cast<std::size_t>(width)) {
+DeepLine::DeepLine(const Hits& shape, int width) : counts_(static_cast<std::size_t>(width)) {
   buffer_.insertSampleCountSlice(
       Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts_.data()), sizeof(unsigned), 0));
-  pointers_.reserve(kHitChannelInfo.size());
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i) {
-    if (!channels.has(i)) continue;
-    std::vector<char*>& at = pointers_.emplace_back(counts_.size());
-    buffer_.insert(std::string(kHitChannelInfo[i].name),
-                   Imf::DeepSlice(pixel_type(kHitChannelInfo[i]), reinterpret_cast<char*>(at.data()),
-                                  sizeof(char*), 0, sizeof(float)));
-  }
+  for_each_channel(
+      [&](const ChannelInfo& channel, const auto&) {
+        std::vector<char*>& at = pointers_.emplace_back(counts_.size());  // its data stay in place
+        buffer_.insert(std::string(channel.name),
+                       Imf::DeepSlice(pixel_type(channel), reinterpret_cast<char*>(at.data()), sizeof(char*),
+                                      0, sizeof(float)));
+      },
+      shape);
 }
 
 void DeepLine::aim(Hits& hits, std::size_t first) {

@@ -38,7 +38,8 @@ std::vector<Imf::Header> make_headers(const Manifest& manifest, const std::strin
 /// all (from line to line the stride is 0); those of a whole picture would be twice as large as its records.
 class DeepLine {
  public:
-  DeepLine(ChannelSet channels, int width);
+  /// For the channels that `shape` has.
+  DeepLine(const Hits& shape, int width);
 
   const Imf::DeepFrameBuffer& buffer() const { return buffer_; }
   std::vector<unsigned>& counts() { return counts_; }

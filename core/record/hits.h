@@ -55,14 +55,6 @@ template <class Table>
 requires std::same_as<std::remove_const_t<Table>, Rays>
 auto columns(Table& rays) { return std::tie(rays.status, rays.steps, rays.error, rays.drift); }
 
-/// In the order of the table.
-inline std::vector<std::string> channel_names(ChannelSet channels) {
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < kHitChannelInfo.size(); ++i)
-    if (channels.has(i)) out.emplace_back(kHitChannelInfo[i].name);
-  return out;
-}
-
 inline const ChannelInfo& info_of(const Hits&, std::size_t channel) { return kHitChannelInfo[channel]; }
 inline const ChannelInfo& info_of(const Rays&, std::size_t channel) { return kRayChannelInfo[channel]; }
 inline bool has_channel(const Hits& hits, std::size_t channel) { return hits.channels.has(channel); }
@@ -77,6 +69,14 @@ inline void set_lamps(Hits& hits, const std::vector<std::string>& lamps, int pat
   hits.channels = hits.light.empty() ? ChannelSet{hits.channels.bits & ~ChannelSet::kLight}
                                      : hits.channels | ChannelSet::of("light");
 }
+/// Columns of the same channels, empty.
+inline Hits empty_like(const Hits& hits) {
+  Hits out;
+  out.channels = hits.channels;
+  for (const LightPath& path : hits.light) out.light.push_back({path.prefix, {}, {}, {}, {}});
+  return out;
+}
+
 /// All columns of a path, in the order of kLightChannelInfo.
 template <class Path>
 requires std::same_as<std::remove_const_t<Path>, LightPath>
@@ -91,7 +91,7 @@ void for_each_light_channel(F&& f, Table& hits, Others&... others) {
       const std::string name = hits.light[i].prefix + std::string(kLightChannelInfo[k].name);
       ChannelInfo info = kLightChannelInfo[k];
       info.name = name;
-      f(info, std::get<k>(columns(hits.light[i])), std::get<k>(columns(others.light[i]))...);
+      f(info, std::get<k>(columns(hits.light[i])), std::get<k>(columns(others.light.at(i)))...);
     };
     [&]<std::size_t... k>(std::index_sequence<k...>) {
       (visit(std::integral_constant<std::size_t, k>{}), ...);
@@ -113,6 +113,13 @@ void for_each_channel(F&& f, Table& table, Others&... others) {
   };
   all(std::make_index_sequence<std::tuple_size_v<decltype(columns(table))>>{});
   if constexpr (std::same_as<std::remove_const_t<Table>, Hits>) for_each_light_channel(f, table, others...);
+}
+
+/// The channels of `hits` in their order, by name.
+inline std::vector<std::string> channel_names(const Hits& hits) {
+  std::vector<std::string> out;
+  for_each_channel([&](const ChannelInfo& channel, const auto&) { out.emplace_back(channel.name); }, hits);
+  return out;
 }
 
 }  // namespace nullcone

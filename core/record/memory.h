@@ -14,9 +14,12 @@
 namespace nullcone {
 
 /// Bytes that records and their preview take in memory if every ray hits something once; every channel has
-/// four bytes.
-constexpr std::uint64_t dataset_bytes(std::uint64_t pixels, std::uint64_t samples, ChannelSet channels) {
-  const auto crossing = 4 * static_cast<std::uint64_t>(std::popcount(channels.bits));
+/// four bytes. `light_paths`: of all lamps together.
+constexpr std::uint64_t dataset_bytes(std::uint64_t pixels, std::uint64_t samples, ChannelSet channels,
+                                      std::uint64_t light_paths = 0) {
+  const std::uint64_t crossing =
+      4 * (static_cast<std::uint64_t>(std::popcount(channels.bits & ~ChannelSet::kLight)) +
+           kLightChannelInfo.size() * light_paths);
   constexpr std::uint64_t ray = 4 * kRayChannelInfo.size(),
                           pixel = sizeof(Hits::offset[0]) + 4 * sizeof(float);
   return pixels * (pixel + samples * (ray + crossing));

@@ -26,6 +26,9 @@ struct Bounds {
   static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
   explicit Bounds(std::string_view range) {
+    constexpr auto kGreatest = static_cast<double>(std::numeric_limits<float>::max());
+    if (range.ends_with("finite")) least = -kGreatest, most = kGreatest;
+    if (range.starts_with("above 0")) least = static_cast<double>(std::numeric_limits<float>::denorm_min());
     if (range.starts_with("0 to ") || range.starts_with("from 0")) least = 0;
     if (range.starts_with("-1 to ")) least = -1;
     if (range.ends_with(" to 1")) most = 1;
@@ -38,7 +41,7 @@ struct Bounds {
 
 Verifier::Verifier(const Manifest& manifest) : manifest_(manifest) {
   old_.manifest = manifest;
-  old_.hits.channels = manifest.channels;
+  old_.hits = empty_hits(manifest);
   try {
     nlohmann::json scene = parse_json(manifest.scene, "manifest: scene");
     scene.erase("look");
@@ -62,6 +65,8 @@ void Verifier::add(const Band& band) {
   if (offset.empty() || offset[0] != 0 || pixels % width != 0)
     return once("hits: the number of pixels is not width x lines");
   if (!std::is_sorted(offset.begin(), offset.end())) return once("hits: the counts a pixel are not counts");
+  if (channel_names(band.hits) != channel_names(empty_hits(manifest_)))
+    return once("hits: the channels are not those of the manifest");
   const std::size_t before = faults_.size();
   const auto check = [&](const char* part, std::size_t expected) {
     return [this, part, expected](const ChannelInfo& channel, const auto& column) {

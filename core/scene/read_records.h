@@ -7,7 +7,7 @@
 namespace nullcone {
 
 /// Reads `records` of the scene's `root`, where it is there. More than one sample a pixel is always told
-/// apart.
-Records read_records(JsonObject& root, int samples);
+/// apart, and light of lamps always recorded: `scene` has its camera and its lamps already.
+Records read_records(JsonObject& root, const Scene& scene);
 
 }  // namespace nullcone

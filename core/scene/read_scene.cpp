@@ -10,6 +10,8 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/sha256.h"
+#include "core/scene/read_lights.h"
+#include "core/scene/read_placing.h"
 #include "core/scene/read_records.h"
 
 namespace nullcone {
@@ -17,52 +19,7 @@ namespace nullcone {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-/// Coordinates, lengths and times beyond this lose all digits of what a picture shows.
-constexpr double kLargest = 1e15;
 constexpr long kMostPixels = 1L << 28;
-
-template <std::size_t N>
-std::array<double, N> to_array(const std::vector<double>& values) {
-  std::array<double, N> out{};
-  std::copy_n(values.begin(), N, out.begin());
-  return out;
-}
-
-Triple cross(const Triple& a, const Triple& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/// A direction of any length but zero, normalised.
-Triple direction(JsonObject& object, std::string_view key, const std::vector<double>& fallback) {
-  const auto v = to_array<3>(object.numbers_or(key, fallback, -kLargest, kLargest));
-  const double length = std::sqrt(dot(v, v));
-  if (!(length > 1e-100)) object.refuse(key, "expected a direction, found (almost) zero");
-  return {v[0] / length, v[1] / length, v[2] / length};
-}
-
-/// Rows x, y, z: z along `z`, y as near to `y` as can be.
-std::array<Triple, 3> axes_from(JsonObject& object, std::string_view z_key,
-                                const std::vector<double>& z_default, std::string_view y_key,
-                                const std::vector<double>& y_default) {
-  const Triple z = direction(object, z_key, z_default), wish = direction(object, y_key, y_default);
-  Triple x = cross(wish, z);
-  const double length = std::sqrt(dot(x, x));
-  if (!(length > 1e-9))
-    object.refuse(y_key, "expected a direction that is not parallel to " + std::string(z_key));
-  for (double& component : x) component /= length;
-  return {x, cross(z, x), z};
-}
-
-Event read_event(JsonObject& object, std::string_view key) {
-  return to_array<4>(object.numbers(key, 4, -kLargest, kLargest));
-}
-
-Triple read_velocity(JsonObject& object, std::string_view key) {
-  const auto v = to_array<3>(object.numbers_or(key, {0, 0, 0}, -1, 1));
-  if (!(dot(v, v) < 1)) object.refuse(key, "is not slower than light; expected a length below 1");
-  return v;
-}
 
 const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDescription> known,
                                      Scene& scene) {
@@ -145,8 +102,7 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric) {
   const std::string type = shape.word("type", {"sphere", "quad", "box", "sky"});
   if (type == "sphere") {
     out.type = ShapeType::sphere;
-    out.radius = shape.positive("radius");
-    if (out.radius > kLargest) shape.refuse("radius", "expected at most 1e15");
+    out.radius = read_radius(shape);
     out.dome = shape.boolean("dome", false);
   } else if (type == "quad" || type == "box") {
     out.type = type == "quad" ? ShapeType::quad : ShapeType::box;
@@ -162,32 +118,6 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric) {
                                "' has no infinity to hold a sky; use a sphere with \"dome\": true");
   }
   shape.finish();
-  return out;
-}
-
-Worldline read_worldline(JsonObject worldline) {
-  Worldline out;
-  const std::string type = worldline.word("type", {"static", "geodesic"});
-  out.event = read_event(worldline, "event");
-  if (type == "geodesic") out.velocity = read_velocity(worldline, "velocity");
-  worldline.finish();
-  return out;
-}
-
-Placing read_placing(JsonObject placing) {
-  Placing out;
-  if (placing.word("type", {"coordinate", "local"}) == "coordinate") {
-    out.type = PlacingType::coordinate;
-    const auto centre = placing.numbers("centre", 3, -kLargest, kLargest);
-    out.worldline.event = {0, centre[0], centre[1], centre[2]};
-  } else {
-    out.type = PlacingType::local;
-    out.worldline = read_worldline(placing.object("worldline"));
-    out.gyroscope_axes = placing.word("axes", {"gyroscope", "static"},
-                                      out.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
-  }
-  out.axes = axes_from(placing, "z_axis", {0, 0, 1}, "y_axis", {0, 1, 0});
-  placing.finish();
   return out;
 }
 
@@ -254,7 +184,8 @@ Scene read_scene(const std::string& text, const std::string& place,
       object.refuse("shape/type", "is a second sky; expected one at most");
   }
   if (scene.objects.empty()) root.refuse("objects", "is empty; expected at least one object to look at");
-  scene.records = read_records(root, scene.camera.samples);
+  if (root.has("lights")) scene.lights = read_lights(root.object("lights"), scene.objects);
+  scene.records = read_records(root, scene);
   if (root.has("look")) root.object("look");  // its contents are post-rendering's affair
   root.text("$schema", "");
   root.finish();

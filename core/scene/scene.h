@@ -100,9 +100,12 @@ struct Lamp {
 struct Lights {
   std::vector<Lamp> lamps;
   int windings = 1;     ///< how often light may go round on its way
-  int paths = 1;        ///< written down a lamp and crossing: the brightest
+  int paths = 2;        ///< written down a lamp and crossing: the brightest
   bool shadows = true;  ///< whether objects stand in the way
   double cap = 1e12;    ///< E is at most this: on caustics the light of points is infinite
+
+  /// Of all lamps together.
+  std::size_t all_paths() const { return lamps.size() * static_cast<std::size_t>(paths); }
 };
 
 /// What is written down of a ray.

@@ -34,20 +34,23 @@ json setting(const Scene& scene) {
   json records = json::object();
   if (scene.records.max_hits > 0) records["max_hits"] = scene.records.max_hits;
   if (scene.records.max_order != Records::kAnyOrder) records["order"] = scene.records.max_order;
-  return {{"metric_parameters", scene.metric_parameters},
-          {"observer",
-           {{"event", o.event},
-            {"velocity", o.velocity},
-            {"frame", o.frame == ObserverFrame::normal ? "normal" : "static"}}},
-          {"camera",
-           {{"type", c.type == CameraType::perspective ? "perspective" : "panorama"},
-            {"samples", c.samples},
-            {"fov_rad", {c.fov_horizontal, c.fov_vertical}},
-            {"forward", c.forward},
-            {"left", c.left},
-            {"up", c.up}}},
-          {"paths", paths},
-          {"records", records}};
+  json out = {{"metric_parameters", scene.metric_parameters},
+              {"observer",
+               {{"event", o.event},
+                {"velocity", o.velocity},
+                {"frame", o.frame == ObserverFrame::normal ? "normal" : "static"}}},
+              {"camera",
+               {{"type", c.type == CameraType::perspective ? "perspective" : "panorama"},
+                {"samples", c.samples},
+                {"fov_rad", {c.fov_horizontal, c.fov_vertical}},
+                {"forward", c.forward},
+                {"left", c.left},
+                {"up", c.up}}},
+              {"paths", paths},
+              {"records", records}};
+  if (const Lights& l = scene.lights; !l.lamps.empty())
+    out["lights"] = {{"windings", l.windings}, {"paths", l.paths}, {"shadows", l.shadows}, {"cap", l.cap}};
+  return out;
 }
 
 }  // namespace
@@ -63,6 +66,10 @@ Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& 
   out.setting = setting(scene).dump();
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     out.objects.push_back({scene.objects[i].name, tracer.tau_origin(i)});
+  std::vector<ObjectEntry> lamps;
+  for (std::size_t i = 0; i < scene.lights.lamps.size(); ++i)
+    lamps.push_back({scene.lights.lamps[i].name, tracer.lamp_tau_origin(i)});
+  out.set_lights(std::move(lamps), scene.lights.paths);
   out.version = code_version();
   out.isa = spacetime.isa();
   out.host = host_name();

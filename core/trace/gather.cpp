@@ -69,22 +69,49 @@ void add_detail(const HitDetail& detail, int samples, Hits& hits) {
   }
 }
 
+/// `lights`: one a path of `hits`.
+void add_light(const HitLight* lights, Hits& hits) {
+  for (LightPath& path : hits.light) {
+    path.E.push_back(to_float(lights->E));
+    path.shift.push_back(to_float(lights->shift));
+    path.t.push_back(to_float(lights->t));
+    path.tau.push_back(to_float(lights->tau));
+    ++lights;
+  }
+}
+
+/// All channels of what the scene can ask for.
+Hits all_columns(const Lights& lights) {
+  Hits out;
+  out.channels = kAllChannels;
+  std::vector<std::string> lamps;
+  for (const Lamp& lamp : lights.lamps) lamps.push_back(lamp.name);
+  set_lamps(out, lamps, lights.paths);
+  return out;
+}
+
 }  // namespace
+
+void Gathering::resize(std::size_t count) {
+  hits.resize(count);
+  if (with_details) details.resize(count);
+  lights.resize(count * light_paths);
+}
 
 HitRoom Gathering::extend(std::size_t count) {
   kept_ = hits.size();
-  hits.resize(kept_ + count);
-  if (with_details) details.resize(kept_ + count);
-  return {hits.data() + kept_, with_details ? details.data() + kept_ : nullptr};
+  resize(kept_ + count);
+  return {hits.data() + kept_, with_details ? details.data() + kept_ : nullptr,
+          light_paths > 0 ? lights.data() + kept_ * light_paths : nullptr, light_paths};
 }
 
 void Gathering::keep(std::size_t count) {
-  hits.resize(kept_ + count);
-  if (with_details) details.resize(kept_ + count);
+  resize(kept_ + count);
   for (std::size_t i = kept_; i < hits.size(); ++i) hits[i].pixel += first_pixel;
 }
 
-TracedBand trace_band(const Tracer& tracer, const Camera& camera, bool with_details, int first_line) {
+TracedBand trace_band(const Tracer& tracer, const Scene& scene, bool with_details, int first_line) {
+  const Camera& camera = scene.camera;
   const Camera rays = sample_camera(camera);
   const int first = first_line * camera.samples,
             end = std::min(first_line + kBandLines, camera.height) * camera.samples;
@@ -92,6 +119,7 @@ TracedBand trace_band(const Tracer& tracer, const Camera& camera, bool with_deta
   std::vector<RayRecord> records(width * static_cast<std::size_t>(end - first));
   Gathering sink;
   sink.with_details = with_details;
+  sink.light_paths = scene.lights.all_paths();
   sink.hits.reserve(records.size());
   for (int line = first; line < end; line += kBandLines) {
     const int lines = std::min(kBandLines, end - line);
@@ -100,7 +128,7 @@ TracedBand trace_band(const Tracer& tracer, const Camera& camera, bool with_deta
     tracer.trace_band(line, lines,
                       {sink, std::span(records).subspan(before, width * static_cast<std::size_t>(lines))});
   }
-  return {std::move(sink.hits), std::move(sink.details), std::move(records)};
+  return {std::move(sink.hits), std::move(sink.details), std::move(sink.lights), std::move(records)};
 }
 
 Band gather(const TracedBand& band, const Scene& scene) {
@@ -108,13 +136,15 @@ Band gather(const TracedBand& band, const Scene& scene) {
   const auto width = static_cast<std::size_t>(camera.width);
   const std::size_t samples = static_cast<std::size_t>(camera.samples * camera.samples);
   Band out;
-  out.hits.channels = kAllChannels;
+  out.hits = all_columns(scene.lights);
+  const std::size_t paths = out.hits.light.size();
   for_each_channel([&](const ChannelInfo&, auto& column) { column.reserve(band.hits.size()); }, out.hits);
   ByPixel by_pixel(band, camera);
   for (std::size_t i = 0; i < band.rays.size() / samples; ++i) {
     by_pixel.for_each(i % width, i / width, [&](std::size_t hit, std::uint32_t sample) {
       add_hit(band.hits[hit], sample, to_float(scene.objects[band.hits[hit].id - 1].opacity), out.hits);
       if (!band.details.empty()) add_detail(band.details[hit], camera.samples, out.hits);
+      add_light(band.lights.data() + hit * paths, out.hits);
     });
     out.hits.offset.push_back(out.hits.Z.size());
   }

@@ -155,12 +155,13 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
                    message);
 }
 
-void check_memory(const Camera& camera, ChannelSet channels, int bands, std::uint64_t available,
-                  const std::string& place) {
+void check_memory(const Scene& scene, int bands, std::uint64_t available, const std::string& place) {
+  const Camera& camera = scene.camera;
   const auto lines = std::min<std::int64_t>(camera.height, std::int64_t{kBandLines} * bands);
   const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(lines);
   const auto samples = static_cast<std::uint64_t>(camera.samples * camera.samples);
-  const std::uint64_t needed = dataset_bytes(pixels, samples, channels);
+  const std::uint64_t needed =
+      dataset_bytes(pixels, samples, scene.records.channels, scene.lights.all_paths());
   if (needed <= available) return;
   const auto gibibytes = [](std::uint64_t bytes) {
     std::array<char, 32> text{};
@@ -177,14 +178,14 @@ double trace_bands(const Tracer& tracer, const Scene& scene, Lines lines, int th
   const bool with_details = (scene.records.channels & kDetailChannels).bits != 0;
   return for_each_band(
       scene.camera, lines, threads, progress, stop,
-      [&](int line) { return gather(trace_band(tracer, scene.camera, with_details, line), scene); }, take);
+      [&](int line) { return gather(trace_band(tracer, scene, with_details, line), scene); }, take);
 }
 
-std::vector<TracedBand> trace_exactly(const Tracer& tracer, const Camera& camera, int threads) {
+std::vector<TracedBand> trace_exactly(const Tracer& tracer, const Scene& scene, int threads) {
   std::vector<TracedBand> out;
   for_each_band(
-      camera, {0, camera.height}, threads, {}, nullptr,
-      [&](int line) { return trace_band(tracer, camera, true, line); },
+      scene.camera, {0, scene.camera.height}, threads, {}, nullptr,
+      [&](int line) { return trace_band(tracer, scene, true, line); },
       [&](TracedBand&& band) { out.push_back(std::move(band)); });
   return out;
 }
@@ -192,12 +193,12 @@ std::vector<TracedBand> trace_exactly(const Tracer& tracer, const Camera& camera
 Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& place, int threads,
                     const Progress& progress, const Note& note) {
   const int all = (scene.camera.height + kBandLines - 1) / kBandLines;
-  check_memory(scene.camera, scene.records.channels, all, available_memory(), place);
+  check_memory(scene, all, available_memory(), place);
   const auto tracer = prepare_scene(spacetime, scene, place);
   if (note) note_doubts(*tracer, scene, place, note);
   Dataset dataset;
   dataset.manifest = describe(spacetime, scene, *tracer);
-  dataset.hits.channels = dataset.manifest.channels;
+  dataset.hits = empty_hits(dataset.manifest);
   dataset.manifest.core_seconds = trace_bands(*tracer, scene, {0, scene.camera.height}, threads, progress,
                                               [&](const Band& band) { dataset.append(band); });
   fingerprint(dataset);

@@ -21,6 +21,7 @@ using Note = std::function<void(const std::string&)>;
 struct TracedBand {
   std::vector<HitRecord> hits;
   std::vector<HitDetail> details;  ///< one a hit, where the scene asks for any
+  std::vector<HitLight> lights;    ///< of each hit the paths of all lamps, lamp by lamp
   std::vector<RayRecord> rays;
 };
 
@@ -36,8 +37,7 @@ Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& 
 
 /// Refuses what would not fit into so many bytes: better now than after hours. `bands`: how many are held at
 /// a time if every ray hits something; all for a whole dataset. Throws InputError.
-void check_memory(const Camera& camera, ChannelSet channels, int bands, std::uint64_t available,
-                  const std::string& place);
+void check_memory(const Scene& scene, int bands, std::uint64_t available, const std::string& place);
 
 /// Bands that are held at a time when `threads` threads trace (0: as many as there are cores).
 int bands_in_flight(int threads);
@@ -48,13 +48,17 @@ class Gathering final : public HitSink {
   /// The pixels of the next lines count from here.
   std::uint32_t first_pixel = 0;
   bool with_details = false;
+  std::size_t light_paths = 0;  ///< of all lamps
   std::vector<HitRecord> hits;
   std::vector<HitDetail> details;  ///< one a hit, or none
+  std::vector<HitLight> lights;    ///< light_paths a hit
 
   HitRoom extend(std::size_t count) override;
   void keep(std::size_t count) override;
 
  private:
+  void resize(std::size_t count);
+
   std::size_t kept_ = 0;
 };
 
@@ -73,7 +77,7 @@ double trace_bands(const Tracer& tracer, const Scene& scene, Lines lines, int th
                    const StopFlag* stop = nullptr);
 
 /// The same for tests, in full precision, of the whole picture; hits are counted in samples.
-std::vector<TracedBand> trace_exactly(const Tracer& tracer, const Camera& camera, int threads = 0);
+std::vector<TracedBand> trace_exactly(const Tracer& tracer, const Scene& scene, int threads = 0);
 
 /// The whole way in memory: prepares, traces, gathers, fingerprints.
 Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& place, int threads = 0,

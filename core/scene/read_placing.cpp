@@ -1,0 +1,89 @@
+#include "core/scene/read_placing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace nullcone {
+
+namespace {
+
+template <std::size_t N>
+std::array<double, N> to_array(const std::vector<double>& values) {
+  std::array<double, N> out{};
+  std::copy_n(values.begin(), N, out.begin());
+  return out;
+}
+
+double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// A direction of any length but zero, normalised.
+Triple direction(JsonObject& object, std::string_view key, const std::vector<double>& fallback) {
+  const auto v = to_array<3>(object.numbers_or(key, fallback, -kLargest, kLargest));
+  const double length = std::sqrt(dot(v, v));
+  if (!(length > 1e-100)) object.refuse(key, "expected a direction, found (almost) zero");
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+/// Rows x, y, z: z along `z_axis`, y as near to `y_axis` as can be.
+std::array<Triple, 3> directions(JsonObject& object) {
+  const Triple z = direction(object, "z_axis", {0, 0, 1}), wish = direction(object, "y_axis", {0, 1, 0});
+  Triple x = cross(wish, z);
+  const double length = std::sqrt(dot(x, x));
+  if (!(length > 1e-9)) object.refuse("y_axis", "expected a direction that is not parallel to z_axis");
+  for (double& component : x) component /= length;
+  return {x, cross(z, x), z};
+}
+
+}  // namespace
+
+double read_radius(JsonObject& shape) {
+  const double out = shape.positive("radius");
+  if (out > kLargest) shape.refuse("radius", "expected at most 1e15");
+  return out;
+}
+
+Event read_event(JsonObject& object, std::string_view key) {
+  return to_array<4>(object.numbers(key, 4, -kLargest, kLargest));
+}
+
+Triple read_velocity(JsonObject& object, std::string_view key) {
+  const auto v = to_array<3>(object.numbers_or(key, {0, 0, 0}, -1, 1));
+  if (!(dot(v, v) < 1)) object.refuse(key, "is not slower than light; expected a length below 1");
+  return v;
+}
+
+Worldline read_worldline(JsonObject& object) {
+  JsonObject worldline = object.object("worldline");
+  Worldline out;
+  const std::string type = worldline.word("type", {"static", "geodesic"});
+  out.event = read_event(worldline, "event");
+  if (type == "geodesic") out.velocity = read_velocity(worldline, "velocity");
+  worldline.finish();
+  return out;
+}
+
+void read_axes(JsonObject& object, Placing& placing) {
+  if (placing.type == PlacingType::local)
+    placing.gyroscope_axes =
+        object.word("axes", {"gyroscope", "static"},
+                    placing.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
+  placing.axes = directions(object);
+}
+
+Placing read_placing(JsonObject placing) {
+  Placing out;
+  if (placing.word("type", {"coordinate", "local"}) == "coordinate") {
+    out.type = PlacingType::coordinate;
+    const auto centre = placing.numbers("centre", 3, -kLargest, kLargest);
+    out.worldline.event = {0, centre[0], centre[1], centre[2]};
+  } else {
+    out.type = PlacingType::local;
+    out.worldline = read_worldline(placing);
+  }
+  read_axes(placing, out);
+  placing.finish();
+  return out;
+}
+
+}  // namespace nullcone
