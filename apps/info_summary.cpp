@@ -13,7 +13,14 @@ namespace {
 /// Counts and ranges of the crossings and endings that have passed by.
 class Counts {
  public:
-  explicit Counts(const Manifest& manifest) : manifest_(manifest), objects_(manifest.objects.size()) {
+  /// `cap`: E that a caustic may have at most.
+  Counts(const Manifest& manifest, double cap)
+      : manifest_(manifest),
+        objects_(manifest.objects.size()),
+        paths_(static_cast<std::size_t>(std::max(manifest.light_paths, 1))),
+        cap_(static_cast<double>(static_cast<float>(cap))),
+        lit_(manifest.lights.size()),
+        capped_(manifest.lights.size()) {
     const Hits shape = empty_hits(manifest);
     for_each_channel(
         [&](const ChannelInfo& channel, const auto&) {
@@ -29,6 +36,11 @@ class Counts {
       most_ = std::max(most_, hits.offset[i + 1] - hits.offset[i]);
     for (const std::uint32_t id : hits.id)
       if (id >= 1 && id <= objects_.size()) ++objects_[id - 1];
+    for (std::size_t i = 0; i < hits.light.size(); ++i)
+      for (const float E : hits.light[i].E) {
+        lit_[i / paths_] += E > 0;
+        capped_[i / paths_] += static_cast<double>(E) >= cap_;
+      }
     for (const std::uint32_t status : band.rays.status)
       if (status < status_.size()) ++status_[status];
     std::size_t range = 0;
@@ -68,6 +80,16 @@ class Counts {
     return out;
   }
 
+  Report lights() const {
+    Report out = Report::array();
+    for (std::size_t i = 0; i < manifest_.lights.size(); ++i)
+      out.push_back({{"name", manifest_.lights[i].name},
+                     {"tau_origin", manifest_.lights[i].tau_origin},
+                     {"lit", lit_[i]},
+                     {"capped", capped_[i]}});
+    return out;
+  }
+
  private:
   /// Least and greatest finite value of a channel.
   struct Range {
@@ -97,15 +119,19 @@ class Counts {
   const Manifest& manifest_;
   std::uint64_t crossings_ = 0, most_ = 0;
   std::vector<std::uint64_t> objects_;
+  std::size_t paths_;
+  double cap_;
+  std::vector<std::uint64_t> lit_,
+      capped_;  ///< by lamp: paths with light, and such that are as bright as may be
   std::array<std::uint64_t, kStatusNames.size()> status_{};
   std::vector<Range> ranges_;
 };
 
-Report lights(const Manifest& manifest) {
-  Report out = Report::array();
-  for (const ObjectEntry& lamp : manifest.lights)
-    out.push_back({{"name", lamp.name}, {"tau_origin", lamp.tau_origin}});
-  return out;
+double cap_of(const Report& setting) {
+  const Report::json_pointer place("/lights/cap");
+  return setting.is_object() && setting.contains(place) && setting.at(place).is_number()
+             ? setting.at(place).get<double>()
+             : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -115,7 +141,7 @@ Report summary(DatasetReader& reader, std::size_t worst) {
   const Report scene = parse_json(m.scene, "manifest: scene");  // refuses what is nested too deep to print
   const Report setting =
       m.setting.empty() ? Report(nullptr) : Report(parse_json(m.setting, "manifest: setting"));
-  Counts counts(m);
+  Counts counts(m, cap_of(setting));
   Quality quality(m, worst);
   for_each_run(m, [&](int first, int lines) {
     const Band band = reader.band(first, lines);
@@ -134,14 +160,15 @@ Report summary(DatasetReader& reader, std::size_t worst) {
           {"hits", counts.crossings()},
           {"status", counts.statuses()},
           {"objects", counts.objects()},
-          {"lights", lights(m)},
+          {"lights", counts.lights()},
           {"light_paths", m.light_paths},
+          {"light_doubts", m.effort.light_doubts},
           {"quality", quality.report()},
           {"payload", {{"hits", m.hits_sha256}, {"rays", m.rays_sha256}}},
           {"scene_sha256", m.scene_sha256},
           {"isa", m.isa},
-          {"core_seconds", m.core_seconds},
-          {"seconds", m.seconds},
+          {"core_seconds", m.effort.core_seconds},
+          {"seconds", m.effort.seconds},
           {"version", m.version},
           {"host", m.host},
           {"format", m.format},

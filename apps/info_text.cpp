@@ -176,7 +176,8 @@ void print_summary(const std::string& path, const Report& report) {
   heading("objects");
   print_records(report["objects"], "  ", "none");
   if (!report["lights"].empty()) {
-    heading("lamps, " + words(report["light_paths"]) + " paths each");
+    heading("lamps, " + words(report["light_paths"]) +
+            " paths each; lit: paths with light, capped: as bright as a caustic may be");
     print_records(report["lights"], "  ", "none");
   }
   print_channels(report);

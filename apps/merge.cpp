@@ -63,12 +63,11 @@ int merge(const std::vector<std::string>& paths, const std::string& output, bool
   Manifest whole = windows.front().manifest;
   whole.first_line = 0;
   whole.lines = whole.traced_lines = whole.height;
-  double core_seconds = 0, seconds = 0;
+  Effort effort;
   for (const Window& window : windows) {
     join(whole.isa, window.manifest.isa);
     join(whole.host, window.manifest.host);
-    core_seconds += window.manifest.core_seconds;
-    seconds += window.manifest.seconds;
+    effort += window.manifest.effort;
   }
   DatasetWriter writer(output, whole);
   for (const Window& window : windows) {
@@ -81,7 +80,7 @@ int merge(const std::vector<std::string>& paths, const std::string& output, bool
     });
     for (const std::string& fault : verifier.faults()) throw InputError(window.path, fault);
   }
-  writer.finish(core_seconds, seconds);
+  writer.finish(effort);
   if (!quiet)
     std::fprintf(stderr, "%s: %zu windows, %d x %d\n", output.c_str(), windows.size(), whole.width,
                  whole.height);

@@ -44,7 +44,12 @@ class Talk {
   void summary(const Manifest& manifest, std::size_t hits, const std::string& path) const {
     if (quiet_) return;
     std::fprintf(stderr, "\r%s: %zu rays, %zu hits, %.2f s, %.2f core-seconds (%s)   \n", path.c_str(),
-                 manifest.rays(), hits, seconds(), manifest.core_seconds, manifest.isa.c_str());
+                 manifest.rays(), hits, seconds(), manifest.effort.core_seconds, manifest.isa.c_str());
+    if (manifest.effort.light_doubts > 0)
+      std::fprintf(
+          stderr,
+          "%s: note: light of a lamp may have been missed %llu times, where it winds about or is focused\n",
+          path.c_str(), static_cast<unsigned long long>(manifest.effort.light_doubts));
   }
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -74,21 +79,24 @@ int trace(const Options& options, const Scene& scene, const Tracer& tracer, cons
   }
   std::size_t hits = 0;
   const Lines lines = {manifest.first_line + writer.lines(), manifest.first_line + manifest.lines};
-  const double core_seconds =
-      before.core_seconds + trace_bands(
-                                tracer, scene, lines, options.common.threads, talk.progress(),
-                                [&](const Band& band) {
-                                  writer.add(band, make_preview(band.hits));
-                                  hits += band.hits.count();
-                                },
-                                &stop_wanted);
+  Effort effort;
+  effort.core_seconds = trace_bands(
+      tracer, scene, lines, options.common.threads, talk.progress(),
+      [&](const Band& band) {
+        writer.add(band, make_preview(band.hits));
+        hits += band.hits.count();
+      },
+      &stop_wanted);
+  effort.seconds = talk.seconds();
+  effort.light_doubts = tracer.light_doubts();
+  effort += before.effort;
   if (writer.lines() == manifest.lines) {
-    writer.finish(core_seconds, before.seconds + talk.seconds());
+    writer.finish(effort);
     std::filesystem::remove(partial);
     talk.summary(writer.manifest(), hits, options.output);
     return 0;
   }
-  writer.finish_partial(partial, core_seconds, before.seconds + talk.seconds());
+  writer.finish_partial(partial, effort);
   std::fprintf(stderr, "%snullcone-trace: interrupted; %s holds %d of %d scan lines, go on with --resume\n",
                options.common.quiet ? "" : "\n", partial.c_str(), writer.manifest().traced_lines,
                manifest.lines);

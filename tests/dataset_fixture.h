@@ -47,8 +47,8 @@ inline Dataset sample(bool with_hits = true, ChannelSet channels = kDefaultChann
   m.scene_sha256 = sha256(m.scene);
   m.metric = "minkowski";
   m.objects = {{"earth", 0.1}, {"moon", -1e15}};
-  m.version = "test 1", m.isa = "sse2", m.host = std::string(64, 'h'), m.core_seconds = 0.25;
-  m.seconds = 0.125;
+  m.version = "test 1", m.isa = "sse2", m.host = std::string(64, 'h'), m.effort.core_seconds = 0.25;
+  m.effort.seconds = 0.125;
   for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
     for (std::uint32_t k = 0; with_hits && k < pixel * 7 % 4; ++k) {
       for_each_channel(

@@ -135,7 +135,7 @@ TEST_F(DatasetFile, APartialFileIsWholeAndSaysWhatIsMissing) {
   {
     DatasetWriter writer(path, whole.manifest);
     writer.add(whole.band(0, 16), Preview(4 * 6 * 16));
-    writer.finish_partial(folder / "a.partial.exr", 1, 2);
+    writer.finish_partial(folder / "a.partial.exr", {1, 2});
   }
   EXPECT_EQ(listing(), std::vector<std::string>{"a.partial.exr"});
   const std::string place = folder / "a.partial.exr";
@@ -154,7 +154,7 @@ TEST_F(DatasetFile, AWriterThatIsGivenUpLeavesNothing) {
   {
     DatasetWriter writer(path, whole.manifest);
     writer.add(whole.band(0, 16), Preview(4 * 6 * 16));
-    EXPECT_THROW(writer.finish(0, 0), WorkError);
+    EXPECT_THROW(writer.finish({}), WorkError);
     EXPECT_THROW(writer.add(whole.band(0, 24), Preview(4 * 6 * 24)), WorkError);
   }
   EXPECT_EQ(listing(), std::vector<std::string>{});

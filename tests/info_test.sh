@@ -56,7 +56,7 @@ expect "all(set(h) == {'Z', 'A', 'object', 'sample', 'shift'} for h in d['hits']
 # Lamps.
 run 0 "$info" lit.exr --verify
 run 0 "$info" lit.exr --json
-expect "d['format'] == 3 and d['light_paths'] == 3 and [set(lamp) for lamp in d['lights']] == [{'name', 'tau_origin'}] and d['lights'][0]['name'] == 'sun'"
+expect "d['format'] == 3 and d['light_paths'] == 3 and [set(lamp) for lamp in d['lights']] == [{'name', 'tau_origin', 'lit', 'capped'}] and d['lights'][0]['name'] == 'sun'"
 expect "[c for c in d['channels'] if c.startswith('light.')] == [f'light.sun.{i}.{c}' for i in range(3) for c in ('E', 'shift', 't', 'tau')]"
 expect "all(d['hits']['ranges'][f'light.sun.{i}.E'][0] >= 0 for i in range(3))"
 run 0 "$info" lit.exr --json --pixel 10,9

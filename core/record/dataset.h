@@ -21,6 +21,17 @@ struct ObjectEntry {
 
 inline constexpr int kNewestFormat = 3;
 
+/// What only the end of tracing tells.
+struct Effort {
+  double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
+  std::uint64_t light_doubts = 0;        ///< how often a lamp's light on a crossing may have been missed
+
+  Effort& operator+=(const Effort& more) {
+    core_seconds += more.core_seconds, seconds += more.seconds, light_doubts += more.light_doubts;
+    return *this;
+  }
+};
+
 /// How a dataset came to be; stored as JSON in the header of the file.
 struct Manifest {
   int format = 2;                 ///< version of the file format: the least that holds the content
@@ -38,7 +49,7 @@ struct Manifest {
   std::vector<ObjectEntry> lights = {};  ///< lamps whose light is recorded; see set_lights()
   int light_paths = 0;                   ///< paths a lamp; 0 without lamps
   std::string version, isa, host;
-  double core_seconds = 0, seconds = 0;  ///< of all processors, and from start to end
+  Effort effort;
   std::string hits_sha256, rays_sha256;  ///< see PayloadHash
 
   /// Light that is recorded, where there are lamps: that takes format 3.

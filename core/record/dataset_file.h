@@ -30,10 +30,10 @@ class DatasetWriter {
   void add(const Band& band, const Preview& preview);
   int lines() const;  ///< so many have come
   /// After the last band; fills in the fingerprints.
-  void finish(double core_seconds, double seconds);
+  void finish(const Effort& effort);
   /// The same after fewer bands, under another name: the lines that are missing have no crossings and the
   /// status `not_traced`.
-  void finish_partial(const std::string& path, double core_seconds, double seconds);
+  void finish_partial(const std::string& path, const Effort& effort);
   const Manifest& manifest() const;
 
  private:

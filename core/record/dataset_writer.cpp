@@ -21,8 +21,8 @@ namespace {
 /// The manifest as it stands in the file: with room for numbers that are not known yet.
 std::string reserved_text(Manifest manifest) {
   manifest.hits_sha256 = manifest.rays_sha256 = std::string(64, '0');
-  manifest.core_seconds = manifest.seconds = 0;
-  return manifest_to_json(manifest) + std::string(64, ' ');
+  manifest.effort = {};
+  return manifest_to_json(manifest) + std::string(96, ' ');
 }
 
 /// The three parts of a file that is being written.
@@ -112,8 +112,8 @@ struct DatasetWriter::Impl {
   }
 
   /// Puts in what is known only now: the manifest's last numbers, then the hash of everything.
-  void seal(double core_seconds, double seconds) {
-    manifest.core_seconds = core_seconds, manifest.seconds = seconds;
+  void seal(const Effort& effort) {
+    manifest.effort = effort;
     manifest.hits_sha256 = hash.hits(), manifest.rays_sha256 = hash.rays();
     parts.reset();
     whole.stream().flush();
@@ -148,15 +148,15 @@ void DatasetWriter::add(const Band& band, const Preview& preview) {
   exr::guard_writing(impl_->path, [&] { impl_->add(band, preview); });
 }
 
-void DatasetWriter::finish(double core_seconds, double seconds) {
+void DatasetWriter::finish(const Effort& effort) {
   exr::guard_writing(impl_->path, [&] {
     if (impl_->lines != impl_->manifest.lines) throw std::logic_error("bands are missing");
-    impl_->seal(core_seconds, seconds);
+    impl_->seal(effort);
     impl_->whole.finish();
   });
 }
 
-void DatasetWriter::finish_partial(const std::string& path, double core_seconds, double seconds) {
+void DatasetWriter::finish_partial(const std::string& path, const Effort& effort) {
   exr::guard_writing(path, [&] {
     Manifest& manifest = impl_->manifest;
     manifest.traced_lines = impl_->lines;
@@ -171,7 +171,7 @@ void DatasetWriter::finish_partial(const std::string& path, double core_seconds,
                       std::vector<std::uint32_t>(rays), std::vector<float>(rays), std::vector<float>(rays)};
       impl_->add(nothing, Preview(4 * pixels));
     }
-    impl_->seal(core_seconds, seconds);
+    impl_->seal(effort);
     impl_->whole.finish(path);
   });
 }
@@ -187,7 +187,7 @@ void write_dataset(const std::string& path, const Dataset& dataset, const Previe
     writer.add(dataset.band(first, lines),
                Preview(begin, begin + static_cast<std::ptrdiff_t>(width * static_cast<std::size_t>(lines))));
   });
-  writer.finish(manifest.core_seconds, manifest.seconds);
+  writer.finish(manifest.effort);
 }
 
 }  // namespace nullcone

@@ -61,6 +61,8 @@ void read_lights(JsonObject& root, Manifest& m) {
   if (lamps.empty() || lamps.size() > kMost) root.refuse("lights", "expected 1 to 64 lamps");
   const long paths = root.integer("light_paths", 1, static_cast<long>(kMost / lamps.size()));
   m.set_lights(std::move(lamps), static_cast<int>(paths));
+  m.effort.light_doubts =
+      static_cast<std::uint64_t>(root.integer("light_doubts", 0, std::numeric_limits<long>::max()));
 }
 
 /// What format 2 has added.
@@ -75,7 +77,7 @@ void read_window(JsonObject& root, Manifest& m) {
   m.samples = static_cast<int>(root.integer("samples", 1, 16));
   m.channels = channels_from(root, m);
   m.setting = canonical_json(root.at("setting"));
-  m.seconds = root.number("seconds");
+  m.effort.seconds = root.number("seconds");
 }
 
 }  // namespace
@@ -91,7 +93,7 @@ std::string manifest_to_json(const Manifest& m) {
               {"version", m.version},
               {"isa", m.isa},
               {"host", m.host},
-              {"core_seconds", m.core_seconds},
+              {"core_seconds", m.effort.core_seconds},
               {"hits_sha256", m.hits_sha256},
               {"rays_sha256", m.rays_sha256}};
   if (m.format > 1)
@@ -101,8 +103,11 @@ std::string manifest_to_json(const Manifest& m) {
                     {"samples", m.samples},
                     {"channels", channel_names(empty_hits(m))},
                     {"setting", m.setting.empty() ? json::object() : json::parse(m.setting)},
-                    {"seconds", m.seconds}});
-  if (m.format > 2) out.update(json{{"lights", to_json(m.lights)}, {"light_paths", m.light_paths}});
+                    {"seconds", m.effort.seconds}});
+  if (m.format > 2)
+    out.update(json{{"lights", to_json(m.lights)},
+                    {"light_paths", m.light_paths},
+                    {"light_doubts", m.effort.light_doubts}});
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -125,7 +130,7 @@ Manifest manifest_from_json(const std::string& text, const std::string& place) {
   m.version = root.text("version");
   m.isa = root.text("isa");
   m.host = root.text("host");
-  m.core_seconds = root.number("core_seconds");
+  m.effort.core_seconds = root.number("core_seconds");
   m.hits_sha256 = root.text("hits_sha256");
   m.rays_sha256 = root.text("rays_sha256");
   root.finish();

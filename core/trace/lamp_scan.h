@@ -106,10 +106,9 @@ class LampScan {
     const GuessFinder found(cone_, spatial(event));
     std::size_t count = 0;
     complete = found.complete;
-    with_stepper<Wide, VariedState<Wide>>(shooting_.accuracy.integrator, [&](auto& stepper) {
-      for (std::size_t i = 0; i < found.count; i += Lanes<Wide>::count)
-        shoot_some(stepper, event, found, i, out, winding, room, count, complete);
-    });
+    PrinceDormand87<Wide, VariedState<Wide>> stepper;  // whatever the scene's rays are followed with
+    for (std::size_t i = 0; i < found.count; i += Lanes<Wide>::count)
+      shoot_some(stepper, event, found, i, out, winding, room, count, complete);
     return count;
   }
   const LightCone& cone() const { return cone_; }

@@ -1,8 +1,7 @@
 // Writes the records of integrated rays.
 #pragma once
 
-#include "core/trace/integrated_lamps.h"
-#include "core/trace/integrated_shadow.h"
+#include "core/trace/illuminator.h"
 #include "core/trace/neighbours.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -19,21 +18,6 @@ struct StepPath {
     const Vec4<S> x = to_phase(here).x, k = to_phase(system->rate(here)).x;
     const Vec4<S> local = local_components(system->metric.g(x), static_tetrad(system->metric, x), k);
     return {x, k, local};
-  }
-};
-
-/// The lamps of a scene, and what stands in their light.
-template <Metric M>
-struct Illuminator {
-  LightRules rules;
-  typename LampsOf<M>::Type lamps;
-  Shades<M> shades;
-
-  bool place(const MarchSetting<M>& setting, const Scene& scene, Unfit& unfit) {
-    rules = LightRules(scene.lights);
-    if (rules.lamps == 0) return true;
-    shades.place(setting, scene);
-    return lamps.place(setting.system.metric, scene, setting.objects, setting.count, unfit);
   }
 };
 
@@ -81,7 +65,9 @@ struct Recorder {
     crossed.record.order = order_of(group, spatial(crossed.emitted));
     const std::uint32_t number = (*crossings)[group.ray[0]].number;
     scatter(crossed.record, group, number, departure->observation[0], origin, to.hits);
-    if (to.lights) light_up(lit_point(setting->system.metric, crossed, InChart{}), group, number, to);
+    if (to.lights)
+      light->illuminate(lit_point(setting->system.metric, crossed, InChart{}), group, number,
+                        departure->observation[0], to);
     if (!to.details || !wanted.any()) return;
 
     Detailed<Wide> detailed;
@@ -94,14 +80,6 @@ struct Recorder {
           change_of_uv(crossed, object.body, object.shape,
                        event_change(*stepper, *setting, *departure, beside(group), crossed.record.Z));
     scatter(detailed, group, to.details);
-  }
-
-  void light_up(const LitPoint<Wide>& lit, const Group<Wide>& group, std::uint32_t own,
-                const HitRoom& to) const {
-    const auto let_through = [&](const Connection<Wide>& c, const Mask<Wide>& asked, std::uint32_t body) {
-      return light->rules.shadows ? light->shades.let_through(*stepper, lit, c, asked, own, body) : Wide(1.0);
-    };
-    light->lamps.illuminate(light->rules, lit, group, own, departure->observation[0], let_through, to);
   }
 
   /// Of a group of rays that have escaped to one sky, whose Ending is `end`.
