@@ -48,8 +48,9 @@ std::string fingerprint_of(const Manifest& manifest, const std::vector<pr::LookI
   for (const int number : {manifest.width, manifest.height, manifest.first_line, manifest.lines,
                            manifest.traced_lines, manifest.samples})
     add(std::to_string(number));
-  for (const ObjectEntry& object : manifest.objects)
-    add(object.name + " " + std::to_string(object.tau_origin));
+  for (const auto& entries : {manifest.objects, manifest.lights})
+    for (const ObjectEntry& one : entries) add(one.name + " " + std::to_string(one.tau_origin));
+  add(std::to_string(manifest.light_paths));
   add(manifest.hits_sha256);
   for (const pr::LookInFull& look : looks) {
     add(look.text);

@@ -67,6 +67,24 @@ void count_pixels(benchmark::State& state) {
 /// What changes from one frame to the next.
 enum class Change { everything, temperature };
 
+/// The same lit by a lamp along two paths, the second of which reaches half of the picture.
+Dataset lit_world() {
+  Dataset out = world(false);
+  out.manifest.lights = {{"sun"}};
+  out.manifest.light_paths = 2;
+  set_lamps(out.hits, {"sun"}, 2);
+  for (std::size_t i = 0; i < kPixels; ++i)
+    for (std::size_t path = 0; path < 2; ++path) {
+      const float x = static_cast<float>(i % kWidth) / kWidth;
+      LightPath& light = out.hits.light[path];
+      light.E.push_back(path == 0 ? 1 + x : std::max(0.0f, x - 0.5f));
+      light.shift.push_back(path == 0 ? 1.0f : 0.8f + 0.3f * x);
+      light.t.push_back(-3);
+      light.tau.push_back(x);
+    }
+  return out;
+}
+
 /// Whole frames on the number of threads of the argument.
 void frames(benchmark::State& state, const std::string& texture, Change change, bool turned,
             ImageParts parts) {
@@ -106,6 +124,48 @@ NULLCONE_FRAMES(black_body_mipmap_all_parts, "mipmap", Change::everything, false
 NULLCONE_FRAMES(black_body_bilinear, "bilinear", Change::everything, false, kLinear);
 NULLCONE_FRAMES(temperature, "mipmap", Change::temperature, false, kLinear);
 NULLCONE_FRAMES(temperature_encoded, "mipmap", Change::temperature, false, kEncoded);
+
+/// Frames of a lit surface whose texture is looked up anew each time, or is not, as the intensity of the lamp
+/// alone changes. `of_lamp` and `of_surface` are further entries.
+void lit_frames(benchmark::State& state, Change change, const nlohmann::json& of_lamp,
+                const nlohmann::json& of_surface) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
+  Renderer renderer(lit_world());
+  nlohmann::json document = look_document("mipmap", false);
+  document["objects"]["earth"]["surface"] = {{"type", "lambertian"}};
+  document["objects"]["earth"].update(of_surface);
+  document["lights"]["sun"] = {{"spectrum", {{"type", "black_body"}, {"temperature_K", 5762}}}};
+  document["lights"]["sun"].update(of_lamp);
+  std::vector<Look> looks;
+  for (int i = 0; i < 64; ++i) {
+    if (change == Change::everything) document["objects"]["earth"]["texture"]["offset"] = {1e-3 * i, 0};
+    if (of_lamp.empty()) document["lights"]["sun"]["intensity"] = 1 + 0.01 * i;
+    looks.push_back(parse_look(document, {"bench", "", ""}, renderer.manifest()));
+  }
+  Image image;
+  for (int i = 0; i < 3; ++i) renderer.render(looks[static_cast<std::size_t>(i)], kLinear, image);
+  std::size_t frame = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    renderer.render(looks[frame++ % looks.size()], kLinear, image);
+    benchmark::ClobberMemory();
+  }
+  count_pixels(state);
+}
+#define NULLCONE_LIT(name, ...)                    \
+  BENCHMARK_CAPTURE(lit_frames, name, __VA_ARGS__) \
+      ->Arg(1)                                     \
+      ->Arg(2)                                     \
+      ->MeasureProcessCPUTime()                    \
+      ->UseRealTime()                              \
+      ->Unit(benchmark::kMillisecond)
+const nlohmann::json kNothing = nlohmann::json::object(),
+                     kBlinks = {{"blink", {{"channel", "tau"}, {"period", 0.3}}}},
+                     kPaint = {{"spectrum", {{"type", "gaussian"}, {"centre_nm", 540}, {"fwhm_nm", 120}}}};
+NULLCONE_LIT(texture, Change::everything, kNothing, kNothing);
+NULLCONE_LIT(intensity, Change::temperature, kNothing, kNothing);
+NULLCONE_LIT(blinking, Change::everything, kBlinks, kNothing);
+NULLCONE_LIT(reflectance, Change::everything, kNothing, kPaint);
 
 /// Frames of which only the exposure changes.
 void development(benchmark::State& state) {

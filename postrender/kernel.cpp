@@ -3,6 +3,7 @@
 
 #include "postrender/kernel_develop.h"
 #include "postrender/kernel_footprint.h"
+#include "postrender/kernel_reflection.h"
 #include "postrender/kernel_spectrum.h"
 #include "postrender/kernel_texture.h"
 
@@ -20,6 +21,7 @@ const Kernel NULLCONE_POSTRENDER_KERNEL = {
     NULLCONE_ISA::filtered_light,
     NULLCONE_ISA::mixed_light,
     NULLCONE_ISA::light_of_lines,
+    NULLCONE_ISA::reflected_light,
     NULLCONE_ISA::background_light,
     NULLCONE_ISA::expose,
     NULLCONE_ISA::exponential_curve,

@@ -106,6 +106,8 @@ struct Kernel {
   void (*filtered)(const TableView& table, const Lit& lit);
   void (*mixed)(const TableView& table, const Lit& lit);
   void (*lines)(const LinesView& lines, const Lit& lit);
+  /// The light of a lamp, also by the ratio on its way to the surface, behind filters.
+  void (*reflected)(const LitTableView& table, const float* g_light, const Lit& lit);
   /// sum += transmittance * color.
   void (*background)(const float* transmittance, const Rgbx& color, std::size_t count, Rgbx* sum);
   // Development, in place but for the first and the last step.

@@ -17,6 +17,7 @@ class LitTable {
 
   /// Black unless both are positive and finite; beyond its ranges as at their ends.
   Rgb color(float g, float g_light) const;
+  LitTableView view() const;
   /// The greatest error found between the nodes, relative to the largest component there, or to a hundredth
   /// of the largest in the table.
   double error() const { return error_; }
@@ -26,6 +27,7 @@ class LitTable {
   /// Coefficients of s^i t^j at [4 i + j]; s along g, t along g_light.
   struct Cell {
     std::array<Rgbx, 16> c;
+    Rgb at(float s, float t) const;  ///< both from 0 to 1
   };
   using Colors = std::function<std::array<double, 3>(double, double)>;
   void fill(const Colors& colors);

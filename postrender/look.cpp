@@ -50,13 +50,44 @@ Effects parse_effects(JsonObject in) {
   return out;
 }
 
+bool has_spectrum(const AppearanceLook& appearance) {
+  return appearance.spectrum && appearance.spectrum->kind != SpectrumLook::Kind::display;
+}
+
+/// The entry of the first light that shines on surfaces without a spectrum; empty if none does.
+std::string light_without_spectrum(const Look& look) {
+  const auto shown_as_it_is = [](const TimeSliceLook& slice) {
+    return slice.appearance.spectrum && !has_spectrum(slice.appearance);
+  };
+  for (const auto& [name, lamp] : look.lights)
+    if (lamp.on && (!has_spectrum(lamp.light) || std::ranges::any_of(lamp.time_slices, shown_as_it_is)))
+      return "lights/" + name;
+  return look.ambient && look.ambient->spectrum.kind == SpectrumLook::Kind::display ? "ambient" : "";
+}
+
+/// A reflectance by wavelength says nothing about light without wavelengths.
+void check_light(const Look& look, const JsonObject& in) {
+  const std::string without = light_without_spectrum(look);
+  for (const auto& [name, object] : look.objects) {
+    if (object.surface != SurfaceType::lambertian) continue;
+    const auto in_slice = [](const TimeSliceLook& slice) { return has_spectrum(slice.appearance); };
+    const bool spectral =
+        has_spectrum(object.appearance) || std::ranges::any_of(object.time_slices, in_slice);
+    if (spectral && !without.empty())
+      in.refuse(without, "needs a spectrum, because objects/" + name + " has a reflectance by wavelength");
+    if (look.legend.scale && look.legend.scale->object == name)
+      in.refuse("legend/scale/object", "expected an object that is self-luminous");
+  }
+}
+
 }  // namespace
 
 Look parse_look(const nlohmann::json& document, const LookSource& source, const Manifest& manifest) {
   JsonObject in(document, source.place, source.pointer, source.survey);
   Look look;
   look.objects = parse_objects(in.object_or_empty("objects"), source, manifest);
-  look.lights = parse_lamps(in.object_or_empty("lights"), source, manifest.lights);
+  look.lights = parse_lamps(in.object_or_empty("lights"), source, manifest);
+  if (in.has("ambient")) look.ambient = parse_ambient(in.object("ambient"), source);
   look.effects = parse_effects(in.object_or_empty("effects"));
   look.sensor = parse_sensor(in, "sensor", source);
   look.pixel_filter = parse_pixel_filter(in.object_or_empty("pixel_filter"));
@@ -64,6 +95,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
   if (in.has("legend")) look.legend = parse_legend(in.object("legend"), source, document, manifest);
   look.background = parse_color_or(in, "background", {});
   in.finish();
+  check_light(look, in);
   return look;
 }
 

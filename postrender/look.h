@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "core/record/dataset.h"
@@ -18,6 +19,7 @@ namespace nullcone::postrender {
 struct Look {
   std::map<std::string, ObjectLook> objects;
   std::map<std::string, LampLook> lights;
+  std::optional<AmbientLook> ambient;
   Effects effects;
   std::shared_ptr<const Sensor> sensor = find_sensor("cie1931");
   PixelFilter pixel_filter;

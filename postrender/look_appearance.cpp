@@ -14,7 +14,7 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t kSteps = 64;  ///< between two keyframes of a spectrum
-constexpr double kColdest_K = 1, kHottest_K = 1e9, kBrightest = 1e12;
+constexpr double kColdest_K = 1, kHottest_K = 1e9, kMostIntense = 1e12;
 
 Clock parse_clock(JsonObject& in, std::string_view key) {
   return in.word(key, {"t", "tau"}) == "tau" ? Clock::tau : Clock::t;
@@ -52,12 +52,23 @@ void parse_spectrum_in_time(JsonObject& outer, const LookSource& source, Appeara
   out.spectrum_in_time.nodes = std::move(spectra);
 }
 
+Blink parse_blink(JsonObject in, const LookSource& source) {
+  Blink out;
+  out.clock = parse_clock(in, "channel");
+  out.period = in.positive("period");
+  out.duty = parse_number_or(in, "duty", source, 0.5, {0, 1});
+  out.phase = parse_number_or(in, "phase", source, 0, {-1e9, 1e9});
+  out.fade = in.number_or("fade", 0, 0);
+  out.transparent = in.word("off", {"black", "transparent"}, "black") == "transparent";
+  in.finish();
+  return out;
+}
+
 AppearanceLook parse_appearance(JsonObject& in, const LookSource& source) {
-  AppearanceLook out;
-  if (in.has("texture")) out.texture = parse_texture(in, source);
-  if (in.has("spectrum")) parse_spectrum_in_time(in, source, out);
-  if (in.has("intensity")) out.intensity = parse_number(in, "intensity", source, {0, kBrightest});
-  if (in.has("blink")) out.blink = parse_blink(in.object("blink"), source);
+  std::optional<TextureLook> texture;
+  if (in.has("texture")) texture = parse_texture(in, source);
+  AppearanceLook out = parse_light(in, source);
+  out.texture = std::move(texture);
   return out;
 }
 
@@ -73,7 +84,9 @@ void parse_fade(JsonObject& in, Slice& out) {
   }
 }
 
-TimeSliceLook parse_time_slice(JsonObject in, const LookSource& source) {
+using ParseAppearance = std::function<AppearanceLook(JsonObject&)>;
+
+TimeSliceLook parse_time_slice(JsonObject in, const ParseAppearance& parse_what) {
   TimeSliceLook out;
   Slice& when = out.when;
   when.clock = parse_clock(in, "channel");
@@ -81,9 +94,9 @@ TimeSliceLook parse_time_slice(JsonObject in, const LookSource& source) {
   when.to = in.number_or("to", std::numeric_limits<double>::infinity());
   if (!(when.from < when.to)) in.refuse("to", "expected a number greater than from");
   parse_fade(in, when);
-  out.appearance = parse_appearance(in, source);
-  if (out.appearance.empty()) in.refuse("", "expected a texture, a spectrum, an intensity or a blink");
+  out.appearance = parse_what(in);
   in.finish();
+  if (out.appearance.empty()) in.refuse("", "expected another texture, spectrum, intensity or blink");
   return out;
 }
 
@@ -99,7 +112,39 @@ void check_fades(const JsonObject& in, const std::vector<TimeSliceLook>& looks) 
   }
 }
 
+/// Textures and spectra of materials go together.
+void check_materials(const AppearanceLook& look, const JsonObject& in, const std::string& key) {
+  const bool spectra = look.spectrum && look.spectrum->kind == SpectrumLook::Kind::materials,
+             texture = look.texture && is_of_materials(*look.texture);
+  if (spectra != texture) in.refuse(key, "a texture and a spectrum of type materials go together");
+}
+
+SurfaceType parse_surface(JsonObject in) {
+  const std::string type = in.word("type", {"self_luminous", "lambertian"}, "self_luminous");
+  in.finish();
+  return type == "lambertian" ? SurfaceType::lambertian : SurfaceType::self_luminous;
+}
+
+/// A reflectance is one spectrum of pure numbers.
+void check_reflectance(const AppearanceLook& own, const JsonObject& in, const std::string& key) {
+  if (!own.spectrum || own.spectrum->kind == SpectrumLook::Kind::display) return;
+  if (own.spectrum_in_time.temperature_K)
+    in.refuse(key, "the spectrum of a lambertian surface is its reflectance, which has no temperature");
+  if (own.spectrum->kind != SpectrumLook::Kind::filtered)
+    in.refuse(key + "/type",
+              "the spectrum of a lambertian surface is its reflectance: expected one spectrum");
+  if (!own.spectrum->spectra[0]->lines().empty()) in.refuse(key, "a reflectance cannot have lines");
+}
+
 }  // namespace
+
+AppearanceLook parse_light(JsonObject& in, const LookSource& source) {
+  AppearanceLook out;
+  if (in.has("spectrum")) parse_spectrum_in_time(in, source, out);
+  if (in.has("intensity")) out.intensity = parse_number(in, "intensity", source, {0, kMostIntense});
+  if (in.has("blink")) out.blink = parse_blink(in.object("blink"), source);
+  return out;
+}
 
 AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) {
   AppearanceLook out = own;
@@ -113,38 +158,31 @@ AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from) 
   return out;
 }
 
-Blink parse_blink(JsonObject in, const LookSource& source) {
-  Blink out;
-  out.clock = parse_clock(in, "channel");
-  out.period = in.positive("period");
-  out.duty = parse_number_or(in, "duty", source, 0.5, {0, 1});
-  out.phase = parse_number_or(in, "phase", source, 0, {-1e9, 1e9});
-  out.fade = in.number_or("fade", 0, 0);
-  out.transparent = in.word("off", {"black", "transparent"}, "black") == "transparent";
-  in.finish();
+std::vector<TimeSliceLook> parse_time_slices(JsonObject& in, const ParseAppearance& parse_what) {
+  std::vector<TimeSliceLook> out;
+  if (in.has("time_slices"))
+    for (JsonObject& slice : in.objects("time_slices")) out.push_back(parse_time_slice(slice, parse_what));
+  check_fades(in, out);
   return out;
-}
-
-/// Textures and spectra of materials go together.
-void check_materials(const AppearanceLook& look, const JsonObject& in, const std::string& key) {
-  const bool spectra = look.spectrum && look.spectrum->kind == SpectrumLook::Kind::materials,
-             texture = look.texture && is_of_materials(*look.texture);
-  if (spectra != texture) in.refuse(key, "a texture and a spectrum of type materials go together");
 }
 
 ObjectLook parse_object(JsonObject in, const LookSource& source) {
   ObjectLook object;
+  object.surface = parse_surface(in.object_or_empty("surface"));
   object.appearance = parse_appearance(in, source);
   if (!object.appearance.spectrum) in.note("spectrum", {{"type", "display"}});
   object.opacity = parse_number_or(in, "opacity", source, 1, {0, 1});
-  if (in.has("time_slices"))
-    for (JsonObject& slice : in.objects("time_slices"))
-      object.time_slices.push_back(parse_time_slice(slice, source));
-  check_fades(in, object.time_slices);
+  object.time_slices =
+      parse_time_slices(in, [&](JsonObject& slice) { return parse_appearance(slice, source); });
+  const bool lit = object.surface == SurfaceType::lambertian;
+  if (lit) check_reflectance(object.appearance, in, "spectrum");
   check_materials(object.appearance, in, "");
-  for (std::size_t i = 0; i < object.time_slices.size(); ++i)
-    check_materials(inherited(object.time_slices[i].appearance, object.appearance), in,
-                    "time_slices/" + std::to_string(i));
+  for (std::size_t i = 0; i < object.time_slices.size(); ++i) {
+    const AppearanceLook& own = object.time_slices[i].appearance;
+    const std::string place = "time_slices/" + std::to_string(i);
+    if (lit) check_reflectance(own, in, place + "/spectrum");
+    check_materials(inherited(own, object.appearance), in, place);
+  }
   in.finish();
   return object;
 }

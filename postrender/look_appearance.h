@@ -1,6 +1,7 @@
 // What a look says about objects: textures, spectra, and when they hold; read strictly from JSON.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,17 +39,29 @@ struct TimeSliceLook {
   AppearanceLook appearance;
 };
 
+/// How a surface sends out light.
+enum class SurfaceType {
+  self_luminous,  ///< texture and spectrum are those of its own light
+  lambertian      ///< it is lit: the texture is its albedo, the spectrum its reflectance
+};
+
 struct ObjectLook {
   AppearanceLook appearance;
   Number opacity{1};                       ///< times what is recorded; always 0 hides the object
   std::vector<TimeSliceLook> time_slices;  ///< the first that holds wins
+  SurfaceType surface = SurfaceType::self_luminous;
+
+  bool is_lit() const { return surface == SurfaceType::lambertian && !opacity.always(0); }
 };
 
 /// The appearance `own`, which inherits what it leaves out.
 AppearanceLook inherited(const AppearanceLook& own, const AppearanceLook& from);
 
-/// A lamp that goes on and off.
-Blink parse_blink(JsonObject in, const LookSource& source);
+/// What time slices and their owner say of light: all of an appearance but the texture.
+AppearanceLook parse_light(JsonObject& in, const LookSource& source);
+/// The slices under the key "time_slices"; `parse_appearance` reads what they have in place of their owner's.
+std::vector<TimeSliceLook> parse_time_slices(
+    JsonObject& in, const std::function<AppearanceLook(JsonObject&)>& parse_appearance);
 
 ObjectLook parse_object(JsonObject in, const LookSource& source);
 

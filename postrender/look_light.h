@@ -1,4 +1,4 @@
-// What a look says about lamps, read strictly from JSON.
+// What a look says about the light that falls on surfaces, read strictly from JSON.
 #pragma once
 
 #include <map>
@@ -14,14 +14,25 @@ namespace nullcone::postrender {
 
 /// A lamp of the scene. Whatever changes with time goes by the lamp's clock at the emission of its light.
 struct LampLook {
-  Number intensity{1};  ///< a factor, >= 0
-  std::optional<Blink> blink;
-  SpectrumLook spectrum;               ///< of its light
-  std::optional<std::set<int>> paths;  ///< of light to the surface, from 0; empty: all
+  bool on = true;
+  AppearanceLook light;                    ///< of its intensity; without a texture
+  std::vector<TimeSliceLook> time_slices;  ///< the first that holds wins
+  std::optional<std::set<int>> paths;      ///< of light to the surface, from 0; empty: all
+
+  bool shines() const { return on && (!paths || !paths->empty()); }
+  bool shines_along(int path) const { return on && (!paths || paths->contains(path)); }
 };
 
-/// Lamps by name. Throws InputError for those that are not among `lamps`.
+/// The same radiance from everywhere, in the rest frame of each surface.
+struct AmbientLook {
+  double intensity = 1;   ///< a factor
+  SpectrumLook spectrum;  ///< of its radiance
+};
+
+/// All lamps of the dataset, by name. Throws InputError for those that are not among them.
 std::map<std::string, LampLook> parse_lamps(JsonObject in, const LookSource& source,
-                                            const std::vector<ObjectEntry>& lamps);
+                                            const Manifest& manifest);
+
+AmbientLook parse_ambient(JsonObject in, const LookSource& source);
 
 }  // namespace nullcone::postrender

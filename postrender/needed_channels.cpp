@@ -1,5 +1,6 @@
 #include "postrender/needed_channels.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -69,17 +70,41 @@ void add_times(const AppearanceLook& own, const std::string& pointer, Needs& out
   add_clocks(emission.clocks(), pointer + "/blink", "leave it out", out);
 }
 
+bool is_spectral(const SpectrumLook& spectrum) {
+  return spectrum.kind != SpectrumLook::Kind::display && spectrum.kind != SpectrumLook::Kind::total_radiance;
+}
+bool is_spectral(const AppearanceLook& appearance) {
+  return appearance.spectrum && is_spectral(*appearance.spectrum);
+}
+
+/// Whether wavelengths come from any light that falls on surfaces.
+bool has_spectral_light(const Look& look) {
+  return (look.ambient && is_spectral(look.ambient->spectrum)) ||
+         std::ranges::any_of(look.lights, [](const auto& entry) {
+           const LampLook& lamp = entry.second;
+           return lamp.shines() && (is_spectral(lamp.light) ||
+                                    std::ranges::any_of(lamp.time_slices, [](const TimeSliceLook& slice) {
+                                      return is_spectral(slice.appearance);
+                                    }));
+         });
+}
+
+/// The light of lamps, if any shine. Lamps that the look does not name do.
+bool needs_lamps(const Look& look, const Manifest& manifest) {
+  return std::ranges::any_of(manifest.lights, [&](const ObjectEntry& lamp) {
+    const auto found = look.lights.find(lamp.name);
+    return found == look.lights.end() || found->second.shines();
+  });
+}
+
 /// What one appearance asks for; `pointer` is its entry in the look.
 void add_needs(const AppearanceLook& appearance, const std::string& pointer, const Effects& effects,
-               const Manifest& manifest, Needs& out) {
+               bool spectral, const Manifest& manifest, Needs& out) {
   const TextureLook texture = appearance.texture.value_or(ColorTexture{});
   if (!std::visit(HasColorAlone{}, texture))
     out.required.push_back({"uv", pointer + "/texture", "use a texture of type color"});
   if (std::visit(HasFootprint{}, texture))
     out.useful = out.useful | ChannelSet::of(manifest.channels.has("duv") ? "duv" : "order");
-  using Kind = SpectrumLook::Kind;
-  const Kind kind = appearance.spectrum ? appearance.spectrum->kind : Kind::display;
-  const bool spectral = kind != Kind::display && kind != Kind::total_radiance;
   if (spectral) out.useful = out.useful | ChannelSet::of("shift");
   if (spectral && effects.doppler) {
     out.required.push_back({"shift", "/effects/doppler", "switch the effect off"});
@@ -99,7 +124,13 @@ Needs needs_of(const Look& look, const Manifest& manifest) {
     opacity.add(object.opacity);
     add_clocks(opacity, pointer + "/opacity", "use a number without keyframes", out);
     add_times(object.appearance, pointer, out);
-    add_needs(object.appearance, pointer, look.effects, manifest, out);
+    const auto add = [&](const AppearanceLook& whole, const std::string& place) {
+      const bool spectral = object.is_lit() ? has_spectral_light(look) : is_spectral(whole);
+      add_needs(whole, place, look.effects, spectral, manifest, out);
+    };
+    if (object.is_lit() && needs_lamps(look, manifest))
+      out.required.push_back({"light", pointer + "/surface", "switch all lamps off"});
+    add(object.appearance, pointer);
     for (std::size_t i = 0; i < object.time_slices.size(); ++i) {
       const TimeSliceLook& slice = object.time_slices[i];
       const std::string place = pointer + "/time_slices/" + std::to_string(i);
@@ -107,8 +138,7 @@ Needs needs_of(const Look& look, const Manifest& manifest) {
       clocks.add(slice.when.clock);
       add_clocks(clocks, place, "leave the time slice out", out);
       add_times(slice.appearance, place, out);
-      add_needs(inherited(slice.appearance, object.appearance), slice.appearance.texture ? place : pointer,
-                look.effects, manifest, out);
+      add(inherited(slice.appearance, object.appearance), slice.appearance.texture ? place : pointer);
     }
   }
   return out;

@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "core/base/error.h"
 #include "postrender/color.h"
@@ -51,28 +50,17 @@ const Dataset& check_records(const Dataset& dataset) {
                  std::to_string(hits.count()) + " crossings");
       },
       hits);
-  const std::size_t objects = dataset.manifest.objects.size();
+  const Manifest& manifest = dataset.manifest;
+  const bool paths =
+      manifest.light_paths >= 0 &&
+      hits.light.size() == manifest.lights.size() * static_cast<std::size_t>(manifest.light_paths);
+  if ((hits.channels.has("light") || !hits.light.empty()) && !paths)
+    refuse("expected the light of each path of each lamp");
+  const std::size_t objects = manifest.objects.size();
   for (const std::uint32_t id : hits.id)
     if (id < 1 || id > objects)
       refuse("a crossing names object " + std::to_string(id) + "; expected 1 to " + std::to_string(objects));
   return dataset;
-}
-
-/// By object: the frequency ratios that its crossings have; (1, 1) where none is sensible.
-std::vector<ShiftRange> shift_ranges(const Dataset& dataset) {
-  const Hits& hits = dataset.hits;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  std::vector<ShiftRange> out(dataset.manifest.objects.size(), {kInfinity, 0});
-  for (std::size_t i = 0; i < hits.shift.size(); ++i) {
-    ShiftRange& range = out[hits.id[i] - 1];
-    const float g = hits.shift[i];
-    if (!(g > 0 && g < kInfinity)) continue;
-    range.from = std::min(range.from, g);
-    range.to = std::max(range.to, g);
-  }
-  for (ShiftRange& range : out)
-    if (!(range.from <= range.to)) range = {};
-  return out;
 }
 
 }  // namespace
@@ -82,8 +70,9 @@ std::shared_ptr<const Renderer::Source> Renderer::make_source(Dataset dataset) {
   dataset = by_samples(std::move(dataset));
   std::vector<std::uint8_t> one_each = lines_with_one_each(dataset);
   std::vector<ShiftRange> shifts = shift_ranges(dataset);
-  return std::make_shared<const Source>(
-      Source{std::move(manifest), std::move(dataset), std::move(one_each), std::move(shifts)});
+  std::vector<std::vector<LightShifts>> light_shifts = light_shift_ranges(dataset);
+  return std::make_shared<const Source>(Source{std::move(manifest), std::move(dataset), std::move(one_each),
+                                               std::move(shifts), std::move(light_shifts)});
 }
 
 Renderer::Renderer(Dataset dataset, const Kernel& kernel, std::shared_ptr<TextureCache> textures)
@@ -96,6 +85,7 @@ Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
       dataset_(source_->dataset),
       one_each_(source_->one_each),
       shifts_(source_->shifts),
+      light_shifts_(source_->light_shifts),
       kernel_(kernel),
       textures_(std::move(textures)) {}
 
@@ -224,6 +214,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   if (!same) {
     textures_->prune();
     lights_.prune();
+    reflections_.prune();
   }
   filter_ = look.pixel_filter;
   shaded_ = std::move(shading);

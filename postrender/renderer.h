@@ -8,12 +8,17 @@
 #include "core/record/dataset.h"
 #include "postrender/light_tables.h"
 #include "postrender/look.h"
+#include "postrender/reflection.h"
 #include "postrender/shade.h"
+#include "postrender/shift_ranges.h"
 #include "postrender/texture_cache.h"
 
 namespace nullcone::postrender {
 
 class TextureMaker;
+
+/// How bright it is when, and its temperature; without opacity.
+Emission emission_of(const AppearanceLook& look, const Effects& effects);
 
 /// Holds a dataset and what depends on unchanged parts of the look: textures, and the shaded radiance when
 /// only exposure, tone curve or gamut mapping change. One thread at a time may call it; inside it works on
@@ -50,15 +55,29 @@ class Renderer {
   struct Source {
     Manifest manifest;
     Dataset dataset;
-    std::vector<std::uint8_t> one_each;  ///< lines_with_one_each()
-    std::vector<ShiftRange> shifts;      ///< by object
+    std::vector<std::uint8_t> one_each;                  ///< lines_with_one_each()
+    std::vector<ShiftRange> shifts;                      ///< by object
+    std::vector<std::vector<LightShifts>> light_shifts;  ///< by object and lamp
   };
   static std::shared_ptr<const Source> make_source(Dataset dataset);
   Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
            std::shared_ptr<TextureCache> textures);
 
+  /// What lamps send out, by Shading::lamp_states, and which lamp each of them is.
+  struct LampLight {
+    LampSpectrum light;
+    std::size_t lamp;
+  };
+  std::vector<LampLight> add_lamps(Shading& shading, const Look& look) const;
+  void add_lamp_state(Shading& shading, std::vector<LampLight>& out, const AppearanceLook& own,
+                      std::size_t lamp, const Effects& effects) const;
+  void light_up(Appearance& out, const SpectrumLook& spectrum, std::span<const LampLight> lamps,
+                std::uint32_t id, const Look& look);
+  void note_light(Shading& shading, const Look& look, std::span<const LampLight> lamps) const;
+
   std::size_t add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
-                             const Number& opacity, std::uint32_t id, const Look& look);
+                             const ObjectLook& object, std::span<const LampLight> lamps, std::uint32_t id,
+                             const Look& look);
   void add_materials(Appearance& out, TextureMaker& textures, const TextureLook& texture,
                      const SpectrumLook& materials, std::uint32_t id, const Look& look);
   Light light_of(const SpectrumLook& spectrum, const Emission& emission, std::uint32_t id, const Look& look);
@@ -74,8 +93,10 @@ class Renderer {
   const Dataset& dataset_;
   std::span<const std::uint8_t> one_each_;
   std::span<const ShiftRange> shifts_;
+  std::span<const std::vector<LightShifts>> light_shifts_;
   const Kernel& kernel_;
   LightTables lights_;
+  ReflectionTables reflections_;
   std::shared_ptr<TextureCache> textures_;
   std::optional<Shading> shaded_;  ///< of the last picture
   PixelFilter filter_;             ///< of the last picture

@@ -9,21 +9,14 @@
 
 namespace nullcone::postrender {
 
-namespace {
-
-/// Opacity, intensity, blinking, temperature.
-void set_emission(Appearance& out, const AppearanceLook& look, const Number& opacity, Effects effects) {
-  out.opacity = opacity.keys ? 1.0f : static_cast<float>(opacity.constant);
-  if (opacity.keys) out.emission.opacity = opacity;
-  out.emission.intensity = look.intensity.value_or(Number{1});
-  out.emission.blink = look.blink;
+Emission emission_of(const AppearanceLook& look, const Effects& effects) {
+  Emission out;
+  out.intensity = look.intensity.value_or(Number{1});
+  out.blink = look.blink;
   if (look.spectrum_in_time.temperature_K)
-    out.emission.temperature = {*look.spectrum_in_time.temperature_K, look.spectrum_in_time.reference_K,
-                                effects};
-  out.changes = out.emission != Emission{};
+    out.temperature = {*look.spectrum_in_time.temperature_K, look.spectrum_in_time.reference_K, effects};
+  return out;
 }
-
-}  // namespace
 
 /// The light of one spectrum as a look has it; where its temperature changes, that of the reference.
 Light Renderer::light_of(const SpectrumLook& spectrum, const Emission& emission, std::uint32_t id,
@@ -52,20 +45,27 @@ void Renderer::add_materials(Appearance& out, TextureMaker& textures, const Text
 }
 
 std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, const AppearanceLook& own,
-                                     const Number& opacity, std::uint32_t id, const Look& look) {
+                                     const ObjectLook& object, std::span<const LampLight> lamps,
+                                     std::uint32_t id, const Look& look) {
   const std::string& name = manifest_.objects[id - 1].name;
   const SpectrumLook spectrum = own.spectrum.value_or(SpectrumLook{});
-  // What radiates by itself needs no colour; what is shown as it is gets its flat one.
-  const Rgb plain = spectrum.physical ? Rgb{1, 1, 1} : default_color(id);
+  // What radiates by itself, or is lit, needs no colour; what is shown as it is gets its flat one.
+  const Rgb plain = spectrum.physical || object.is_lit() ? Rgb{1, 1, 1} : default_color(id);
   const TextureLook texture = own.texture.value_or(ColorTexture{plain});
   const bool materials = is_of_materials(texture);
   Appearance out{materials ? ColorTexture{} : textures.make(texture), {}};
-  set_emission(out, own, opacity, look.effects);
+  const Number& opacity = object.opacity;
+  out.opacity = opacity.keys ? 1.0f : static_cast<float>(opacity.constant);
+  out.emission = emission_of(own, look.effects);
+  if (opacity.keys) out.emission.opacity = opacity;
+  out.changes = out.emission != Emission{};
   const std::size_t first = shading.appearances.size();
   const auto add = [&](const SpectrumLook& one) {
     const std::string unknown = unknown_wavelengths(one, look.effects, *look.sensor, shifts_[id - 1]);
     if (!unknown.empty()) shading.notes.push_back("/objects/" + name + "/spectrum: " + unknown);
-    if (materials) {
+    if (object.is_lit()) {
+      light_up(out, one, lamps, id, look);
+    } else if (materials) {
       out.more.clear();
       add_materials(out, textures, texture, one, id, look);
     } else {
@@ -84,13 +84,14 @@ std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, c
 Shading Renderer::prepare(const Look& look) {
   check_channels(look, manifest_, dataset_.hits.channels, "dataset");
   Shading shading{{}, {}, look.background, {}};
+  const std::vector<LampLight> lamps = add_lamps(shading, look);
   TextureMaker textures(*textures_);
   for (std::uint32_t id = 1; id <= manifest_.objects.size(); ++id) {
     const ObjectEntry& entry = manifest_.objects[id - 1];
     const auto found = look.objects.find(entry.name);
     const ObjectLook object = found == look.objects.end() ? ObjectLook{} : found->second;
     const auto add = [&](const AppearanceLook& appearance) {
-      return add_appearance(shading, textures, appearance, object.opacity, id, look);
+      return add_appearance(shading, textures, appearance, object, lamps, id, look);
     };
     const std::size_t usual = add(object.appearance);
     std::vector<Slice> slices;
@@ -103,6 +104,7 @@ Shading Renderer::prepare(const Look& look) {
     shading.objects.push_back({entry.tau_origin, usual, SliceTable(std::move(slices)),
                                object.appearance.spectrum_in_time.timeline});
   }
+  note_light(shading, look, lamps);
   textures.read_films(dataset_, shading);
   return shading;
 }

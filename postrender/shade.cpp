@@ -8,17 +8,6 @@ namespace nullcone::postrender {
 
 namespace {
 
-void add_light(const Kernel& kernel, const Light& light, const Lit& lit) {
-  if (!light.table) return kernel.plain(lit);
-  const TableView table = light.table->view();
-  (table.stride == 1 ? kernel.filtered : kernel.mixed)(table, lit);
-  if (!light.lines) return;
-  const LineTable& lines = *light.lines;
-  kernel.lines({lines.lines.data(), lines.lines.size(), table.stride == 3, lines.first_nm, 1 / lines.step_nm,
-                static_cast<double>(lines.response.size() - 1), lines.response.data(), lines.power->view()},
-               lit);
-}
-
 /// Where the run of equal values that begins at `first` ends.
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t first) {
   constexpr std::size_t kStride = 16;
@@ -41,6 +30,7 @@ LineShader::LineShader(const Dataset& dataset, std::span<const std::uint8_t> one
       shading_(shading),
       kernel_(kernel),
       layers_(dataset, one_each),
+      illumination_(dataset, one_each, shading, kernel),
       layered_(std::ranges::any_of(shading.appearances, has_own_weight) ||
                std::ranges::any_of(shading.objects, &ObjectShading::blends)),
       clocks_(clocks_of(shading)),
@@ -206,9 +196,18 @@ void LineShader::look_up(const std::array<Layer, 3>& lines, const Texture& textu
   postrender::look_up(kernel_, texture, run, times_of(first, count), layers_.recorded_steps(), out);
 }
 
-void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
+/// With a factor on its weights.
+Lit LineShader::dimmed(Lit lit, float factor) {
+  if (factor == 1) return lit;
+  for (std::size_t i = 0; i < lit.count; ++i) light_[i] = factor * lit.weight[i];
+  lit.weight = light_.data();
+  return lit;
+}
+
+void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, const RunPlace& place,
                                std::size_t count, Rgbx* display, Rgbx* physical) {
   const Layer& here = lines[1];
+  const std::size_t first = place.first;
   const Appearance& appearance = shading_.appearances[pass.appearance[first]];
   const bool known = has_alpha(appearance.texture);
   Rgbx* found = kept_.line != nullptr ? kept_.line + first : colors_.data();
@@ -227,7 +226,8 @@ void LineShader::shade_segment(const std::array<Layer, 3>& lines, const Pass& pa
     lit.g = shift_.data();
     lit.weight = light_.data();
   }
-  add_light(kernel_, appearance.light, lit);
+  if (!appearance.reflections.empty()) illumination_.add(appearance, place, lit, {display, physical});
+  if (appearance.own_light > 0) add_light(kernel_, appearance.light, dimmed(lit, appearance.own_light));
   for (const Appearance::Component& component : appearance.more) {
     look_up(lines, component.texture, first, count, colors_.data());
     lit.colors = colors_.data();
@@ -248,7 +248,7 @@ void LineShader::shade_pass(const Pass& pass, std::size_t row, std::size_t rank,
       ready = true;
     }
     for (std::size_t from = first; from < last; from += kSegment)
-      shade_segment(lines, pass, from, std::min(kSegment, last - from), display, physical);
+      shade_segment(lines, pass, {row, rank, from}, std::min(kSegment, last - from), display, physical);
   }
 }
 

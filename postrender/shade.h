@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/record/dataset.h"
+#include "postrender/illumination.h"
 #include "postrender/kernel.h"
 #include "postrender/layers.h"
 #include "postrender/shading.h"
@@ -54,7 +55,8 @@ class LineShader {
   Pass& pass_at(std::size_t number);
   void look_up(const std::array<Layer, 3>& lines, const Texture& texture, std::size_t first,
                std::size_t count, Rgbx* out);
-  void shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, std::size_t first,
+  Lit dimmed(Lit lit, float factor);
+  void shade_segment(const std::array<Layer, 3>& lines, const Pass& pass, const RunPlace& place,
                      std::size_t count, Rgbx* display, Rgbx* physical);
   void shade_pass(const Pass& pass, std::size_t row, std::size_t rank, const Layer& here, Rgbx* display,
                   Rgbx* physical);
@@ -66,6 +68,7 @@ class LineShader {
   const Shading& shading_;
   const Kernel& kernel_;
   Layers layers_;
+  Illumination illumination_;
   KeptColors kept_;
   bool whole_weights_ = false;  ///< the first pass has weights of 1
   bool layered_;                ///< weights are more than transmittance times recorded opacity
@@ -78,7 +81,8 @@ class LineShader {
   std::deque<Pass> passes_;     ///< the first for every pixel that is seen, the others where they are needed
   std::size_t used_ = 1;        ///< passes of this rank
   std::array<std::array<float, kSegment>, 4> footprints_;
-  std::array<float, kSegment> shift_, light_;  ///< where the temperature changes
+  std::array<float, kSegment> shift_,
+      light_;  ///< where the temperature changes; light_ also where weights have a factor
   std::array<Rgbx, kSegment> colors_;
 };
 

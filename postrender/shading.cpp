@@ -30,15 +30,24 @@ bool same_textures(const Shading& a, const Shading& b) {
          std::ranges::equal(a.appearances, b.appearances, {}, &Appearance::texture, &Appearance::texture);
 }
 
+namespace {
+
+/// Whether it radiates in cd/m^2 (or in display colours, not physical).
+bool radiates(const Appearance& appearance, bool physical) {
+  return (appearance.own_light > 0 && appearance.light.physical == physical) ||
+         std::ranges::any_of(appearance.reflections,
+                             [&](const Reflection& one) { return one.light.physical == physical; });
+}
+
+}  // namespace
+
 bool has_display(const Shading& shading) {
   return shading.background != Rgb{} ||
-         std::ranges::any_of(shading.appearances,
-                             [](const Appearance& appearance) { return !appearance.light.physical; });
+         std::ranges::any_of(shading.appearances, [](const Appearance& one) { return radiates(one, false); });
 }
 
 bool has_physical(const Shading& shading) {
-  return std::ranges::any_of(shading.appearances,
-                             [](const Appearance& appearance) { return appearance.light.physical; });
+  return std::ranges::any_of(shading.appearances, [](const Appearance& one) { return radiates(one, true); });
 }
 
 }  // namespace nullcone::postrender

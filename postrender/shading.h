@@ -7,7 +7,7 @@
 #include "postrender/coats.h"
 #include "postrender/emission.h"
 #include "postrender/moving_texture.h"
-#include "postrender/spectrum.h"
+#include "postrender/reflection.h"
 
 namespace nullcone::postrender {
 
@@ -25,8 +25,20 @@ struct Appearance {
     bool operator==(const Component&) const = default;
   };
   std::vector<Component> more = {};
+  float own_light = 1;  ///< a factor on `light`; of lit surfaces that is what they reflect of ambient light
+  std::vector<Reflection> reflections = {};  ///< by LampState; empty: only its own light is seen
 
   bool operator==(const Appearance&) const = default;
+};
+
+/// A lamp during one of its time slices, or without one.
+using LampState = Emission;
+
+/// A lamp that is on, ready for pixels.
+struct LampShading {
+  ObjectShading when;  ///< its states and clock; "appearances" are numbers in Shading::lamp_states
+  std::vector<std::size_t> paths;  ///< those that count: numbers in Hits::light
+  bool operator==(const LampShading&) const = default;
 };
 
 /// A look with everything that a pixel needs at hand: textures read, spectra tabulated, names turned into
@@ -36,6 +48,8 @@ struct Shading {
   std::vector<ObjectShading> objects;  ///< by id - 1
   Rgb background;                      ///< display colour behind everything
   std::vector<std::string> notes;      ///< what the user should know of it
+  std::vector<LampShading> lamps = {};
+  std::vector<LampState> lamp_states = {};
   bool operator==(const Shading&) const = default;
 };
 

@@ -155,4 +155,10 @@ TableView SpectralTable::view() const {
   return {nodes_.data(), range_.from, range_.to, unused_bits_, first_, stride_};
 }
 
+LinesView LineTable::view(bool mixed) const {
+  return {lines.data(),    lines.size(), mixed,
+          first_nm,        1 / step_nm,  static_cast<double>(response.size() - 1),
+          response.data(), power->view()};
+}
+
 }  // namespace nullcone::postrender

@@ -23,6 +23,20 @@ struct TableView {
   std::int32_t stride;       ///< nodes that stand side by side for one g: 1, or 3 for red, green and blue
 };
 
+/// Where the cells of a table stand along a ratio: at its upper bits.
+struct GridView {
+  float from, to;
+  std::int32_t unused_bits, first;
+};
+
+/// A LitTable (lit_table.h): cells of 16 coefficients, those of s^i t^j at [4 i + j]; s along g, t along
+/// g_light.
+struct LitTableView {
+  const Rgbx* cells;
+  GridView along, across;
+  std::int32_t across_cells;
+};
+
 /// A line of a spectrum, W m^-2 sr^-1.
 struct TableLine {
   double wavelength_nm, strength;

@@ -34,9 +34,17 @@ struct Effects {
   bool operator==(const Effects&) const = default;
 
   /// The power of g that multiplies L(g lambda) or L(lambda).
-  double power() const { return !searchlight ? 0 : doppler ? radiance.spectral : radiance.integrated; }
+  double power() const { return power_of(radiance, doppler); }
   /// The power for what has no spectrum that could be shifted.
-  double power_without_spectrum() const { return searchlight ? radiance.integrated : 0; }
+  double power_without_spectrum() const { return power_of(radiance, false); }
+  /// The same of g from a lamp to a surface.
+  double light_power() const { return power_of(irradiance, doppler); }
+  double light_power_without_spectrum() const { return power_of(irradiance, false); }
+
+ private:
+  double power_of(const Beaming& of, bool spectral) const {
+    return !searchlight ? 0 : spectral ? of.spectral : of.integrated;
+  }
 };
 
 /// Frequency ratios from..to, both positive and finite.
@@ -76,6 +84,9 @@ struct LineTable {
   double first_nm = 0, step_nm = 1;
   std::vector<std::array<double, 3>> response;  ///< of the sensor, in linear sRGB
   std::shared_ptr<const SpectralTable> power;   ///< of g
+
+  /// `mixed`: of three spectra.
+  LinesView view(bool mixed) const;
 };
 
 /// What is seen of a surface by g, times the colour of its texture.

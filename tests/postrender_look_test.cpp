@@ -122,14 +122,17 @@ TEST(Looks, lamps_are_those_of_the_dataset) {
   const std::string none = complaint([&] { look_of(look, manifest); });
   EXPECT_NE(none.find("/lights/sun: the dataset has no lamps"), std::string::npos) << none;
   manifest.lights = {{"sun", 0}};
+  manifest.light_paths = 3;
   const LampLook sun = look_of(look, manifest).lights.at("sun");
-  EXPECT_EQ(sun.intensity, Number{2.5});
-  EXPECT_TRUE(sun.blink);
+  EXPECT_EQ(sun.light.intensity, Number{2.5});
+  EXPECT_TRUE(sun.light.blink);
   EXPECT_EQ(sun.paths, (std::set<int>{0, 2}));
-  for (const auto& [wrong, words] : {std::pair{R"({"lights":{"moon":{}}})", "no such lamp"},
-                                     {R"({"lights":{"sun":{"paths":[-1]}}})", "/paths/0"},
-                                     {R"({"lights":{"sun":{"spectrum":{"type":"rgb"}}}})", "/spectrum/type"},
-                                     {R"({"lights":{"sun":{"intensity":-1}}})", "/intensity"}}) {
+  for (const auto& [wrong, words] :
+       {std::pair{R"({"lights":{"moon":{}}})", "no such lamp"},
+        {R"({"lights":{"sun":{"paths":[-1]}}})", "/paths/0"},
+        {R"({"lights":{"sun":{"paths":[2,3]}}})", "/paths/1: expected a whole number from 0 to 2"},
+        {R"({"lights":{"sun":{"spectrum":{"type":"rgb"}}}})", "/spectrum/type"},
+        {R"({"lights":{"sun":{"intensity":-1}}})", "/intensity"}}) {
     const std::string found = complaint([&] { look_of(wrong, manifest); });
     EXPECT_NE(found.find(words), std::string::npos) << wrong << ": " << found;
   }
