@@ -64,7 +64,7 @@ struct DirectionMesh {
     const auto add_row = [&](double e) {
       if (e > 0 && before_curve == 0) before_curve = row;
       for (std::size_t j = 0; j < CriticalCurve::kColumns; ++j)
-        places.push({{e, CriticalCurve::phi_of(2 * j), 0}});
+        places.push({{e, CriticalCurve::phi_of(4 * j), 0}});
       ++row;
     };
     curve.for_each_row(turning, add_row);

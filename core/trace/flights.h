@@ -16,7 +16,6 @@ struct Flights {
   std::unique_ptr<double[]> memory;
   std::array<double*, 8> y{}, y1{};  ///< y1: end of the step that waits to be looked at
   double *lambda, *h, *growth, *steps, *error, *length, *delta;
-  double* limit;                  ///< how far the ray is followed
   std::array<double*, 3> axis{};  ///< about which turns are counted (turns.h)
   double* turns;                  ///< so far, where the ray stands
   std::unique_ptr<std::uint32_t[]> object, list, waiting;
@@ -25,7 +24,7 @@ struct Flights {
 
   explicit Flights(std::size_t rays)
       : count(rays),
-        memory(new double[28 * rays]()),
+        memory(new double[27 * rays]()),
         object(new std::uint32_t[rays]()),
         list(new std::uint32_t[rays]),
         waiting(new std::uint32_t[rays]),
@@ -34,7 +33,7 @@ struct Flights {
     const auto column = [&] { return std::exchange(next, next + rays); };
     for (std::size_t i = 0; i < 8; ++i) y[i] = column(), y1[i] = column();
     lambda = column(), h = column(), growth = column(), steps = column(), error = column(), length = column(),
-    delta = column(), limit = column(), turns = column();
+    delta = column(), turns = column();
     for (double*& component : axis) component = column();
   }
 };

@@ -108,18 +108,21 @@ class ScannedLamps {
 
   static constexpr std::size_t kMost = LampScan<M>::kMostConnections;
 
-  /// The connections of some events with one point, side by side by their rank in affine length.
+  /// The connections of a group of events with one point of a lamp.
   template <class S>
   struct Found {
     static constexpr std::size_t kWidth = Lanes<S>::count;
-    std::array<std::array<Connection<double>, kMost>, kWidth> lane;
+    std::array<Connection<double>, kWidth * kMost> connections;
+    std::array<int, kWidth * kMost> winding;
     std::array<std::size_t, kWidth> count{};
+    std::array<bool, kWidth> complete{};
 
+    /// Those of rank k in affine length, side by side.
     Connection<S> rank(std::size_t k) const {
       const auto gather = [&](auto&& f) {
         std::array<double, kWidth> values{};
-        for (std::size_t i = 0; i < kWidth; ++i)  // 0: there is none
-          values[i] = k < count[i] ? f(lane[i][k]) : 0;
+        for (std::size_t i = 0; i < kWidth; ++i)
+          if (k < count[i]) values[i] = f(connections[i * kMost + k]);
         return Lanes<S>::load(values.data());
       };
       const auto gather4 = [&](auto&& f) {
@@ -138,14 +141,15 @@ class ScannedLamps {
   template <class S, class Group>
   std::size_t connect(const LampScan<M>& scan, const LitPoint<S>& lit, const Group& group,
                       Found<S>& out) const {
-    std::size_t most = 0;
-    std::array<int, kMost> winding;
+    std::array<Vec4<double>, Lanes<S>::count> events{};
+    for (std::size_t i = 0; i < group.filled; ++i) events[i] = lane_of(lit, i).event;
     out.count = {};
+    scan.connect(events.data(), group.filled,
+                 {out.connections.data(), out.winding.data(), kMost, out.count.data(), out.complete.data()});
+    std::size_t most = 0;
     for (std::size_t i = 0; i < group.filled; ++i) {
-      bool complete = true;
-      out.count[i] = scan.connect(lane_of(lit, i).event, out.lane[i].data(), winding.data(), kMost, complete);
       most = std::max(most, out.count[i]);
-      if (!complete) doubts_.fetch_add(1, std::memory_order_relaxed);
+      if (!out.complete[i]) doubts_.fetch_add(1, std::memory_order_relaxed);
     }
     return most;
   }

@@ -1,86 +1,125 @@
-// Shadows along integrated rays: how much of a lamp's light comes past the objects.
+// Shadows along integrated rays: how much of a lamp's light gets through the objects between it and an event.
 #pragma once
 
-#include "core/trace/illumination.h"
 #include "core/trace/march.h"
 
 NULLCONE_KERNEL_BEGIN
 
-/// The objects of a scene as light on its way to a surface meets them: it goes on behind all of them, and
-/// each surface takes the part `opacity` of it.
+/// What shadows are made of.
 template <Metric M>
-class Shades {
- public:
-  void place(const MarchSetting<M>& setting, const Scene& scene) {
-    setting_ = setting;
-    objects_.reset(new MarchObject<M>[setting.count]);
-    opacity_.reset(new double[scene.objects.size() + 1]);
-    for (std::size_t i = 0; i < setting.count; ++i) {
-      objects_[i] = setting.objects[i];
-      objects_[i].ends_rays = false;
-    }
-    for (std::size_t i = 0; i < scene.objects.size(); ++i) opacity_[i + 1] = scene.objects[i].opacity;
-    setting_.objects = objects_.get();
-    setting_.max_hits = 0;
+struct ShadowSetting {
+  const MarchSetting<M>* march;  ///< objects, accuracy
+  const double* opacity;         ///< by object number - 1
+  std::uint32_t lamp_body = 0;   ///< number of the object that casts no shadow; 0: none
+
+  double opacity_of(const MarchObject<M>& object) const { return opacity[object.number - 1]; }
+  bool casts(const MarchObject<M>& object) const {
+    return object.number != lamp_body && opacity_of(object) > 0;
   }
-
-  double opacity(std::uint32_t number) const { return opacity_[number]; }
-
-  /// What is left of the light along connections, for the lanes that are wanted. `own`: the object that is
-  /// lit; `body`: one that does not stand in the way, 0 for none.
-  template <class S, class Stepper>
-  S let_through(Stepper& stepper, const LitPoint<S>& lit, const Connection<S>& c, const Mask<S>& wanted,
-                std::uint32_t own, std::uint32_t body) const {
-    std::array<bool, Lanes<S>::count> asked{};
-    Lanes<S>::store(wanted, asked.data());
-    std::array<double, Lanes<S>::count> through{};
-    std::array<std::size_t, Lanes<S>::count> lane_of_ray{};
-    std::size_t rays = 0;
-    for (std::size_t lane = 0; lane < asked.size(); ++lane)
-      if (asked[lane]) lane_of_ray[rays++] = lane;
-    if (rays == 0) return S(1.0);
-    Flights flights(rays);
-    Trails trails(setting_, rays);
-    for (std::size_t ray = 0; ray < rays; ++ray) {
-      through[lane_of_ray[ray]] = 1;
-      launch<Stepper>(lane_of(lit, lane_of_ray[ray]), lane_of(c, lane_of_ray[ray]), own, body, ray, flights,
-                      trails);
-    }
-    march<S>(stepper, setting_, flights, &trails);
-    for (std::size_t i = 0; i < trails.found.size(); ++i) {
-      const StepCrossing& met = trails.found[i];
-      if (met.lambda + met.delta < flights.limit[met.ray])
-        through[lane_of_ray[met.ray]] *= 1 - opacity_[met.number];
-    }
-    return Lanes<S>::load(through.data());
-  }
-
- private:
-  template <class Stepper>
-  void launch(const LitPoint<double>& lit, const Connection<double>& c, std::uint32_t own, std::uint32_t body,
-              std::size_t ray, Flights& flights, Trails& trails) const {
-    const M& metric = setting_.system.metric;
-    const Vec4<double> k = static_tetrad(metric, lit.event).to_chart(c.past);
-    const State<double> y = to_state(Phase<double>{lit.event, metric.g(lit.event) * k}),
-                        dy = setting_.system.rate(y);
-    for (std::size_t i = 0; i < 8; ++i) flights.y[i][ray] = y[i];
-    flights.growth[ray] = kGrowth;
-    flights.limit[ray] = (1 - 1e-9) * c.lambda;  // what holds the lamp is not in its way
-    flights.h[ray] = first_step<Stepper::kRoots>(metric, y, dy, setting_.accuracy.rtol);
-    const Vec3<double> axis = turning_axis(spatial(lit.event), spatial(to_phase(dy).x));
-    for (std::size_t i = 0; i < 3; ++i) flights.axis[i][ray] = axis[i];
-    for (std::size_t i = 0; i < setting_.count; ++i) {
-      const MarchObject<M>& object = setting_.objects[i];
-      const std::size_t at = i * trails.rays + ray;
-      const double from = object.number == own ? leaving(lit, c) : 0;
-      trails.after[at] = object.number == body ? kFar : from;
-      trails.side[at] = object.holds(lit.event + from * k, k) ? -1 : 1;
-    }
-  }
-
-  MarchSetting<M> setting_;
-  std::unique_ptr<MarchObject<M>[]> objects_;
-  std::unique_ptr<double[]> opacity_;  ///< by the object's number, from 1
 };
+
+template <class S>
+struct Shade {
+  S through;     ///< part of the light that gets through, 0 to 1
+  Mask<S> lost;  ///< the ray was given up: this means nothing
+};
+
+/// Where rays are among the objects, by place in the list.
+template <class S>
+struct ShadowTrail {
+  Alongside<S> alongside;
+  Mask<S> is_free;  ///< the next crossing is that of the start with the surface it lies on
+};
+
+/// At the start of rays, of which those on the object `own` lie on its surface.
+template <class S, Metric M>
+ShadowTrail<S> shadow_trail(const MarchObject<M>& object, const Phase<S>& at, const Phase<S>& rate,
+                            bool own) {
+  return with_type(object.marched, [&](const auto& marched) {
+    const auto& shape = marched.shape;
+    const Located<S> here = marched.map.locate(at.x, rate.x);
+    bool flat = false;
+    if constexpr (requires { shape.flat(); }) flat = shape.flat();
+    const S way_out(shape.starts_inside() ? -1.0 : 1.0);
+    ShadowTrail<S> out;
+    out.alongside.after = S(0.0);
+    if (own) {
+      const auto outwards = way_out * dot(shape.normal(here.X), here.slope) > S(0.0);
+      out.alongside.side = S(-1.0);
+      out.is_free = outwards | (S(flat ? 1.0 : 0.0) > S(0.0));
+    } else {
+      const auto inside = way_out * shape.value(here.X) < S(0.0);
+      out.alongside.side = flat ? S(1.0) : select(inside, S(-1.0), S(1.0));
+      out.is_free = inside & !inside;
+    }
+    return out;
+  });
+}
+
+/// What an object lets through of light that crosses it within a step from `start` on.
+template <class S, Metric M, std::size_t n>
+S through_object(const MarchObject<M>& object, double opacity, const StepStates<S, n>& step, const S& start,
+                 const S& length, const Mask<S>& wanted, ShadowTrail<S>& trail, Mask<S>& lost) {
+  return object.with_curve(step.at, step.rate, length, [&](const auto& curve, const auto& shape) {
+    const S resolution = resolution_of(step, length);
+    S through(1.0);
+    Mask<S> goes_on = wanted;
+    for (int i = 0; any(goes_on); ++i) {
+      const Search<S> search = trail.alongside.cross(curve, shape, start, length, resolution, goes_on);
+      lost = lost | search.given_up;
+      through = select(search.met & !trail.is_free, S(1 - opacity) * through, through);
+      trail.is_free = trail.is_free & !search.met;
+      goes_on = search.met & (through > S(0.0));
+      if (i == kMostInAStep) lost = lost | search.met, goes_on = goes_on & !goes_on;
+    }
+    return through;
+  });
+}
+
+/// Light to events from where past-directed rays with these chart tangents, frequency 1 at the events, come
+/// to at lambda = length. The events lie on the surface of the object number `own`, or on none (0): a ray
+/// does not meet the surface that it leaves, but may come back to it. Rays that are not `wanted` let all
+/// through.
+template <class Stepper, Metric M, class S>
+Shade<S> light_through(Stepper& stepper, const ShadowSetting<M>& setting, std::uint32_t own,
+                       const Vec4<S>& event, const Vec4<S>& tangent, const S& length, const Mask<S>& wanted) {
+  const MarchSetting<M>& march = *setting.march;
+  const M& metric = march.system.metric;
+  Flight<S> flight;
+  flight.y = to_state(Phase<S>{event, metric.g(event) * tangent}), flight.dy = march.system.rate(flight.y);
+  flight.h = first_step<Stepper::kRoots>(metric, flight.y, flight.dy, march.accuracy.rtol);
+  const std::unique_ptr<ShadowTrail<S>[]> trails(new ShadowTrail<S>[march.count]);
+  for (std::size_t k = 0; k < march.count; ++k)
+    trails[k] = shadow_trail(march.objects[k], to_phase(flight.y), to_phase(flight.dy),
+                             march.objects[k].number == own);
+  Mask<S> active = wanted & (flight.lambda < length);
+  Shade<S> out{S(1.0), active & !active};
+  while (any(active)) {
+    const Attempt<S> a = attempt(stepper, march.system, march.accuracy, flight,
+                                 next_step(metric, flight, length - flight.lambda));
+    const State<S> y = flight.y;
+    const Phase<S> from = to_phase(y), rate = to_phase(flight.dy), to = to_phase(a.y1),
+                   end_rate = to_phase(a.dy1);
+    const Mask<S> moves = active & a.accepted;
+    const Capsule<S> capsule(spatial(from.x), spatial(rate.x), spatial(to.x), spatial(end_rate.x), a.h);
+    for (std::size_t k = 0; k < march.count; ++k) {
+      const MarchObject<M>& object = march.objects[k];
+      const Mask<S> near = moves & object.may_come_near(capsule, from, rate, to, end_rate, a.h);
+      if (!setting.casts(object) || !any(near)) continue;
+      const StepStates<S, states_of_step<Stepper>()> step(stepper, march.system, y, a.y1, a.h);
+      out.through = out.through * through_object(object, setting.opacity_of(object), step, flight.lambda, a.h,
+                                                 near, trails[k], out.lost);
+    }
+    learn(flight, a, active);
+    const S progress = a.h * norm(spatial(rate.x));
+    const auto stuck = active & !a.accepted & !(progress > S(1e-14) * length_scale(metric, from.x));
+    flight.y = select(moves, a.y1, flight.y);
+    flight.dy = select(moves, a.dy1, flight.dy);
+    flight.lambda = select(moves, flight.lambda + a.h, flight.lambda);
+    out.lost = out.lost | stuck | (active & (flight.steps >= S(kStepLimit)));
+    active = active & !out.lost & (out.through > S(0.0)) & (flight.lambda < length);
+  }
+  return out;
+}
 
 NULLCONE_KERNEL_END

@@ -64,18 +64,9 @@ class IntegratedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
-  std::uint64_t light_doubts() const override { return light_.lamps.doubts(); }
-  std::uint32_t object_about_lamp(std::size_t lamp) const override {
-    const Vec4<double> event = light_.lamps.event_at_observation(lamp);
-    for (std::size_t i = 0; i < setting_.count; ++i) {
-      const MarchObject<M>& object = setting_.objects[i];
-      const bool around = !object.starts_inside() && object.holds(event, Vec4<double>{{1, 0, 0, 0}});
-      if (around && !light_.lamps.is_body(lamp, object.number) && light_.shades.opacity(object.number) == 1)
-        return object.number;
-    }
-    return 0;
-  }
-  double lamp_tau_origin(std::size_t lamp) const override { return light_.lamps.tau_origin(lamp); }
+  std::uint64_t light_doubts() const override { return light_.doubts(); }
+  std::uint32_t object_about_lamp(std::size_t lamp) const override { return light_.object_about(lamp); }
+  double lamp_tau_origin(std::size_t lamp) const override { return light_.tau_origin(lamp); }
   double distortion(std::size_t object) const override { return distortions_[object]; }
 
  private:
@@ -145,7 +136,6 @@ class IntegratedTracer final : public Tracer {
       for (std::size_t& ray : group.ray) ray -= first;
       const State<Wide> y = departure_.state(from.load_k(rays));
       group.store(Wide(kGrowth), flights.growth);
-      group.store(Wide(setting_.lookback), flights.limit);
       store(group, y, flights.y);
       const Vec3<Wide> axis =
           turning_axis(spatial(to_phase(y).x), spatial(to_phase(setting_.system.rate(y)).x));

@@ -14,22 +14,26 @@ struct ScanGuess {
   double inside;        ///< least barycentric coordinate: negative outside its tetrahedron
   Vec3<double> spread;  ///< how much places differ within it,
   double length;        ///< and affine lengths
+  double turning;       ///< angle swept about the origin
   bool odd;             ///< the sheet of the light cone is turned round
 };
 
 /// Guesses at one point of space.
 class GuessFinder {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 256;
+  static constexpr double kTurningError = 0.2;  ///< of guesses, in radians
 
-  GuessFinder(const LightCone& cone, const Vec3<double>& x) : cone_(cone), x_(x) {
+  /// Of light that turns by less than `most_turning`.
+  GuessFinder(const LightCone& cone, const Vec3<double>& x, double most_turning)
+      : cone_(cone), x_(x), most_turning_(most_turning) {
     bool held = false;
     for (std::size_t k = 0; k < cone.targets && !held; ++k) {
       if (!cone.grids[k].holds(x)) continue;
       held = true;
       cone.grids[k].for_each_at(x, [&](std::uint32_t number) { look_into(cone.prisms[number]); });
     }
-    complete = held && complete;
+    complete = held && cone.complete && complete;
   }
 
   std::size_t count = 0;
@@ -45,16 +49,18 @@ class GuessFinder {
       const Barycentric at(corner, x_);
       if (!(at.least() >= -kInflation)) continue;
       const ScanNode& first = *corner[0];
-      ScanGuess guess{first.place, first.lambda, at.least(), {}, 0, (at.volume < 0) != prism.odd};
+      ScanGuess guess{
+          first.place, first.lambda, at.least(), {}, 0, first.turning, (at.volume < 0) != prism.odd};
       for (std::size_t i = 1; i < 4; ++i) {
         const Vec3<double> way = cone_.curve.way(first.place, corner[i]->place);
         const double later = corner[i]->lambda - first.lambda;
         guess.place = guess.place + at.weight[i] * way;
         guess.lambda += at.weight[i] * later;
+        guess.turning += at.weight[i] * (corner[i]->turning - first.turning);
         for (std::size_t c = 0; c < 3; ++c) guess.spread[c] = max(guess.spread[c], abs(way[c]));
         guess.length = max(guess.length, abs(later));
       }
-      if (guess.lambda > 0) add(guess);
+      if (guess.lambda > 0 && guess.turning < most_turning_ + kTurningError) add(guess);
     }
   }
 
@@ -81,6 +87,16 @@ class GuessFinder {
 
   const LightCone& cone_;
   Vec3<double> x_;
+  double most_turning_;
+};
+
+/// Room for the connections at many events: `room` of them each, from out + i room on.
+struct ConnectionRoom {
+  Connection<double>* out;
+  int* winding;  ///< how often each goes round, from 0
+  std::size_t room;
+  std::size_t* counts;
+  bool* complete;  ///< false where some may have been missed, or there was no room
 };
 
 /// A lamp at rest whose light cone is known near some targets.
@@ -89,7 +105,7 @@ class LampScan {
   static_assert(is_stationary<M>(), "the light cone of a lamp at rest repeats itself");
 
  public:
-  static constexpr std::size_t kMostConnections = GuessFinder::kMost;
+  static constexpr std::size_t kMostConnections = 64;
 
   /// For light that sweeps an angle of less than windings 2 pi about the chart's origin, up to an affine
   /// length of `lookback` (frequency 1 at the lamp), to events within the targets.
@@ -103,56 +119,74 @@ class LampScan {
   /// `complete` is false where some may have been missed, or there was no room.
   std::size_t connect(const Vec4<double>& event, Connection<double>* out, int* winding, std::size_t room,
                       bool& complete) const {
-    const GuessFinder found(cone_, spatial(event));
     std::size_t count = 0;
-    complete = found.complete;
-    PrinceDormand87<Wide, VariedState<Wide>> stepper;  // whatever the scene's rays are followed with
-    for (std::size_t i = 0; i < found.count; i += Lanes<Wide>::count)
-      shoot_some(stepper, event, found, i, out, winding, room, count, complete);
+    const ConnectionRoom to{out, winding, room, &count, &complete};
+    connect(&event, 1, to);
     return count;
+  }
+  /// The same at many events: whole packs of guesses.
+  void connect(const Vec4<double>* events, std::size_t count, const ConnectionRoom& to) const {
+    Pool<Pending> pending(4 * count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const GuessFinder found(cone_, spatial(events[i]), most_turning_);
+      to.counts[i] = 0, to.complete[i] = found.complete;
+      for (std::size_t k = 0; k < found.count; ++k) pending.push({i, found.guesses[k]});
+    }
+    PrinceDormand87<Wide, VariedState<Wide>> stepper;  // each more would take seconds to compile
+    for (std::size_t i = 0; i < pending.size(); i += Lanes<Wide>::count)
+      shoot_some(stepper, events, pending, i, to);
   }
   const LightCone& cone() const { return cone_; }
 
  private:
+  struct Pending {
+    std::uint32_t event;
+    ScanGuess guess;
+  };
+
   template <class Stepper>
-  void shoot_some(Stepper& stepper, const Vec4<double>& event, const GuessFinder& from, std::size_t first,
-                  Connection<double>* out, int* winding, std::size_t room, std::size_t& count,
-                  bool& complete) const {
+  void shoot_some(Stepper& stepper, const Vec4<double>* events, const Pool<Pending>& pending,
+                  std::size_t first, const ConnectionRoom& to) const {
     constexpr std::size_t kWidth = Lanes<Wide>::count;
-    const std::size_t filled = std::min(kWidth, from.count - first);
+    const std::size_t filled = std::min(kWidth, pending.size() - first);
     const auto gather = [&](auto&& f) {
       std::array<double, kWidth> values{};
       for (std::size_t lane = 0; lane < kWidth; ++lane)
-        values[lane] = f(from.guesses[first + std::min(lane, filled - 1)]);
+        values[lane] = f(pending[first + std::min(lane, filled - 1)]);
       return Lanes<Wide>::load(values.data());
     };
-    Aims<Wide> aims;
+    ShotGuess<Wide> guess;
+    guess.event = Vec4<Wide>::map(
+        [&](std::size_t c) { return gather([&](const Pending& p) { return events[p.event][c]; }); });
     for (std::size_t lane = 0; lane < kWidth; ++lane)
-      aims.lane[lane] = Aim(cone_.curve, from.guesses[first + std::min(lane, filled - 1)].place);
-    const ShotGuess<Wide> guess{convert<Wide>(event), aims, gather([](const auto& g) { return g.lambda; })};
+      guess.aims.lane[lane] = Aim(cone_.curve, pending[first + std::min(lane, filled - 1)].guess.place);
+    guess.lambda = gather([](const Pending& p) { return p.guess.lambda; });
     const ShotResult<Wide> shot = shoot(stepper, shooting_, guess, guess.lambda == guess.lambda);
     for (std::size_t lane = 0; lane < filled; ++lane) {
-      const auto result = lane_of(shot, lane);
-      if (!result.connection.found) {
-        complete = complete && from.guesses[first + lane].inside < 0;
-      } else if (result.turning <= most_turning_) {
-        keep(result, out, winding, room, count, complete);
+      const ShotResult<double> result = lane_of(shot, lane);
+      const auto& [event, from] = pending[first + lane];
+      if (result.connection.found) {
+        if (result.turning <= most_turning_) keep(result, event, to);
+      } else if (from.inside >= 0 && from.turning < most_turning_ - GuessFinder::kTurningError) {
+        to.complete[event] = false;
       }
     }
   }
 
   /// Inserts by affine length what is not known yet.
-  void keep(const ShotResult<double>& result, Connection<double>* out, int* winding, std::size_t room,
-            std::size_t& count, bool& complete) const {
+  void keep(const ShotResult<double>& result, std::size_t event, const ConnectionRoom& to) const {
     const double same = max(1e-7, 100 * shooting_.accuracy.rtol);
     const Connection<double>& c = result.connection;
+    Connection<double>* const out = to.out + event * to.room;
+    int* const winding = to.winding + event * to.room;
+    std::size_t& count = to.counts[event];
     for (std::size_t i = 0; i < count; ++i)
       if (norm(out[i].past - c.past) < same && abs(out[i].lambda - c.lambda) < same * c.lambda) return;
     std::size_t at = count;
     while (at > 0 && out[at - 1].lambda > c.lambda) --at;
-    if (count == room) complete = false;
-    if (at == room) return;
-    if (count < room) ++count;
+    if (count == to.room) to.complete[event] = false;
+    if (at == to.room) return;
+    if (count < to.room) ++count;
     for (std::size_t i = count - 1; i > at; --i) out[i] = out[i - 1], winding[i] = winding[i - 1];
     out[at] = c;
     winding[at] = static_cast<int>(result.turning / (2 * std::numbers::pi));

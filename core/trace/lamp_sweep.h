@@ -41,10 +41,10 @@ class LampSweep {
   static constexpr int kLevels = 3;
   /// Beside the critical curve errors grow as distances from it shrink.
   static double tolerance_for(double turning) {
-    return is_central<M>() ? max(1e-12, 1e-6 * min(1.0, exp(std::numbers::pi - turning))) : 1e-6;
+    return is_central<M>() ? max(1e-12, 1e-6 * decay(turning - std::numbers::pi)) : 1e-6;
   }
   static constexpr double kMargin = 1;  ///< radians that rays go on, lest triangles be cut at the limit
-  static constexpr std::size_t kMostRays = 300000, kMostSlices = 3000;
+  static constexpr std::size_t kMostRays = 60000, kMostSlices = 3000, kMostPrisms = 8000000;
 
   DirectionMesh make_mesh() {
     cone_.curve = find_critical_curve<Wide>(stepper_, setting_, start_);
@@ -53,17 +53,16 @@ class LampSweep {
 
   void sweep(double lookback) {
     double lambda = 0, length = 0.1 * length_scale(setting_.system.metric, start_.place);
-    for (; slice_ <= kMostSlices && lambda < lookback; ++slice_) {
+    for (; lambda < lookback; ++slice_) {
       const double next = min(lambda + length, lookback);
       launch();
       const Pool<std::uint32_t> list = rays_in_use();
       if (list.size() == 0) break;
+      cone_.complete = slice_ <= kMostSlices && cone_.prisms.size() <= kMostPrisms;
+      if (!cone_.complete) break;
       advance_rays<Wide>(stepper_, setting_, rays_, list, lambda, next);
       refine(lambda, next);
       leave_prisms(lambda, next);
-      if (getenv("DBG"))
-        printf("slice %u lambda %g rays %zu going %zu triangles %zu prisms %zu dl %g\n", slice_, next,
-               rays_.size(), list.size(), mesh_.triangles.size(), cone_.prisms.size(), next - lambda);
       length = next_length(list, next - lambda);
       drop_triangles();
       lambda = next;
@@ -93,15 +92,18 @@ class LampSweep {
 
   /// Whether the ray in the middle of an edge tells something that its ends do not.
   bool is_too_coarse(const ScanRay& a, const ScanRay& middle, const ScanRay& b) const {
-    constexpr double kMostEdge = 0.5, kLeastEdge = 0.02, kMostSag = 0.1, kLeastSag = 0.01, kMostBend = 0.05;
+    constexpr double kMostEdge = 0.5, kLeastEdge = 0.02, kMostSag = 0.1, kLeastSag = 0.01, kMostBend = 0.05,
+                     kMostFall = 1.7;
     if (a.fate == ScanFate::left || b.fate == ScanFate::left || middle.fate == ScanFate::left) return false;
-    const int stand =
-        (a.fate == ScanFate::stands) + (middle.fate == ScanFate::stands) + (b.fate == ScanFate::stands);
-    if (stand == 3) return false;
+    const auto stands = [](const ScanRay& r) { return r.fate == ScanFate::stands; };
+    const auto creeps = [&](const ScanRay& r) {
+      return stands(r) || (is_central<M>() && r.rate > kFastRate);
+    };
+    if (stands(a) && stands(middle) && stands(b)) return false;
     const auto& metric = setting_.system.metric;
     const double scale = min(length_scale(metric, to_phase(a.y).x), length_scale(metric, to_phase(b.y).x));
     const double edge = norm(b.X() - a.X()), sag = norm(middle.X() - 0.5 * (a.X() + b.X()));
-    if (stand > 0) return edge > scale;
+    if (creeps(a) || creeps(middle) || creeps(b)) return edge > kMostFall * scale;
     if (edge > kMostEdge * scale) return true;
     if (sag > kMostSag * edge && sag > kLeastSag * scale) return true;
     const Vec3<double> bend = normalised(middle.V) - 0.5 * (normalised(a.V) + normalised(b.V));
@@ -149,7 +151,8 @@ class LampSweep {
     ScanRay& r = rays_[ray];
     std::uint32_t& node = end ? r.node : r.node_before;
     if (node == UINT32_MAX) {
-      cone_.nodes.push({spatial(to_phase(end ? r.y : r.before).x), mesh_.places[ray], lambda});
+      cone_.nodes.push({spatial(to_phase(end ? r.y : r.before).x), mesh_.places[ray], lambda,
+                        end ? r.turning : r.turning_before});
       node = static_cast<std::uint32_t>(cone_.nodes.size() - 1);
     }
     return node;
@@ -202,7 +205,7 @@ class LampSweep {
     double turn = 1e-3, reach = 1e300;
     for (std::size_t i = 0; i < list.size(); ++i) {
       const ScanRay& ray = rays_[list[i]];
-      if (ray.fate != ScanFate::goes_on) continue;
+      if (ray.fate != ScanFate::goes_on || (is_central<M>() && ray.rate > kFastRate)) continue;
       turn = max(turn, angle_between(ray.V_before, ray.V));
       reach = min(reach, length_scale(setting_.system.metric, to_phase(ray.y).x) / norm(ray.V));
     }

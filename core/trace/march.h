@@ -29,10 +29,8 @@ struct Marching {
   S end = S(0.0);  ///< an Ending
   Mask<S> active, near, given_up, broken;
   Turning<S> turning;
-  S limit;  ///< of lambda
 
-  Marching(const Flight<S>& from, const Turning<S>& turned, const S& most)
-      : flight(from), y1(from.y), turning(turned), limit(most) {
+  Marching(const Flight<S>& from, const Turning<S>& turned) : flight(from), y1(from.y), turning(turned) {
     active = from.lambda == from.lambda;
     near = given_up = broken = active & !active;
   }
@@ -54,7 +52,7 @@ Mask<S> comes_near(const MarchSetting<M>& setting, const Flight<S>& flight, cons
 template <class Stepper, Metric M, class S>
 void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) {
   const auto& metric = setting.system.metric;
-  const S& limit = m.limit;
+  const S limit(setting.lookback);
   Flight<S>& flight = m.flight;
   const Attempt<S> a = attempt(stepper, setting.system, setting.accuracy, flight,
                                next_step(metric, flight, limit - flight.lambda));
@@ -98,7 +96,7 @@ void advance_group(Stepper& stepper, const MarchSetting<M>& setting, const Group
                    Flights& flights, std::size_t& left) {
   Flight<S> flight = load_flight(group, flights);
   flight.dy = setting.system.rate(flight.y);
-  Marching<S> m(flight, load_turning(group, flights), group.load(flights.limit));
+  Marching<S> m(flight, load_turning(group, flights));
   for (int i = 0; i < rounds && any(m.active); ++i) try_step(stepper, setting, m);
   store(group, m, flights);
   std::array<bool, Group<S>::kWidth> active{}, near{}, given_up{}, broken{};
@@ -148,7 +146,7 @@ void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>
       end_ray(setting, flights, ray, Status::step_limit, 0);
     } else if (how != 0) {
       end_ray(setting, flights, ray, status_of(how), how);
-    } else if (!(flights.lambda[ray] < flights.limit[ray])) {
+    } else if (!(flights.lambda[ray] < setting.lookback)) {
       end_ray(setting, flights, ray, Status::lookback_reached, 0);
     } else {
       flights.list[flights.listed++] = static_cast<std::uint32_t>(ray);

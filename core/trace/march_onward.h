@@ -60,35 +60,49 @@ struct Trails {
   }
 };
 
+/// On which side of an object rays are, -1 inside, and from which lambda on they may meet it again.
+template <class S>
+struct Alongside {
+  S side, after;
+
+  /// The next crossing within a step that begins at lambda = start, of the lanes that are `wanted`.
+  template <class Curve, class Shape>
+  Search<S> cross(const Curve& curve, const Shape& shape, const S& start, const S& limit, const S& resolution,
+                  const Mask<S>& wanted) {
+    Search<S> search(limit);
+    search.lambda = max(after - start, S(0.0));
+    search.active = wanted & (search.lambda < limit);
+    advance(curve, Onward<S, Shape>{shape, side < S(0.0)}, limit, resolution, kSearchLimit, search);
+    const S rounding = resolution + S(4e-15) * search.lambda;
+    const S past = start + (search.lambda + shape.skip(curve.at(search.lambda), rounding));
+    after = select(search.met, past, after);
+    side = select(search.met, -side, side);
+    return search;
+  }
+};
+inline constexpr int kMostInAStep = 256;  ///< crossings with an object
+
 /// All crossings of a step with object number i, in the order of the list, before `limit`; lanes that give
 /// up are added to `lost`.
 template <class S, class Curve, class Shape>
 void cross_onward(const Curve& curve, const Shape& shape, const Group<S>& group, const Flights& flights,
                   std::size_t i, std::uint32_t number, const S& limit, const S& resolution, Trails& trails,
                   Mask<S>& lost) {
-  constexpr int kMostInAStep = 256;
-  double *const sides = trails.side.get() + i * trails.rays, *const afters =
-                                                                 trails.after.get() + i * trails.rays;
+  double* const sides = trails.side.get() + i * trails.rays;
+  double* const afters = trails.after.get() + i * trails.rays;
   const S start = group.load(flights.lambda);
-  S side = group.load(sides), after = group.load(afters);
+  Alongside<S> alongside{group.load(sides), group.load(afters)};
   auto goes_on = start == start;
   for (int n = 0; any(goes_on); ++n) {
-    Search<S> search(limit);
-    search.lambda = max(after - start, S(0.0));
-    search.active = goes_on & (search.lambda < limit);
-    advance(curve, Onward<S, Shape>{shape, side < S(0.0)}, limit, resolution, kSearchLimit, search);
+    const Search<S> search = alongside.cross(curve, shape, start, limit, resolution, goes_on);
     lost = lost | search.given_up;
     goes_on = search.met;
     if (!any(goes_on)) break;
     trails.add(group, flights, search.met, number, search.lambda);
-    const S rounding = resolution + S(4e-15) * search.lambda;
-    const S past = start + (search.lambda + shape.skip(curve.at(search.lambda), rounding));
-    after = select(search.met, past, after);
-    side = select(search.met, -side, side);
     if (n == kMostInAStep) lost = lost | search.met, goes_on = goes_on & !goes_on;
   }
-  group.store(side, sides);
-  group.store(after, afters);
+  group.store(alongside.side, sides);
+  group.store(alongside.after, afters);
 }
 
 /// What the coordinates' own rounding leaves of a length of lambda, and what the curve of a step does.

@@ -36,10 +36,11 @@ struct Box3 {
   }
 };
 
-/// A point of the light cone: spatial coordinates, the ray's place in the mesh, and how far it has come.
+/// A point of the light cone: spatial coordinates, the ray's place in the mesh, how far it has come,
+/// and the angle that it has swept about the origin.
 struct ScanNode {
   Vec3<double> x, place;
-  double lambda;
+  double lambda, turning;
 };
 
 /// What a triangle of rays sweeps in one slice: corners 0 to 2 at its beginning, 3 to 5 at its end, each in
@@ -50,7 +51,7 @@ struct ScanPrism {
   bool unresolved;  ///< the rays differ too much to tell what lies between them
 };
 inline constexpr std::array<std::array<std::size_t, 4>, 3> kTetrahedra = {
-    {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 3, 4, 5}}};
+    {{0, 1, 2, 5}, {0, 1, 5, 4}, {0, 3, 4, 5}}};
 
 /// How far outside a tetrahedron, in barycentric coordinates, it still answers.
 inline constexpr double kInflation = 0.25;
@@ -126,6 +127,7 @@ struct LightCone {
   std::size_t targets = 0;
   std::unique_ptr<TargetGrid[]> grids;
   std::size_t unresolved = 0;  ///< prisms
+  bool complete = true;        ///< false: the sweep was given up
   CriticalCurve curve;
 
   Box3 box_of(const ScanPrism& prism) const {

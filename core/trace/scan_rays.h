@@ -16,15 +16,17 @@ enum class ScanFate : std::uint8_t {
 struct ScanRay {
   State<double> y{}, before{};  ///< at the end of the slice and at its beginning
   Vec3<double> V{}, V_before{};
-  double h = 0, growth = kGrowth, turning = 0;
+  double h = 0, growth = kGrowth, turning = 0, turning_before = 0;
   double end = 0;  ///< an Ending
   ScanFate fate = ScanFate::goes_on, fate_before = ScanFate::goes_on;
   std::uint32_t node = UINT32_MAX, node_before = UINT32_MAX;  ///< in a scan's list
   std::uint32_t slice = 0;                                    ///< for which it was last wanted
 
+  double rate = 1;  ///< dt/dlambda over p_t: how much slower clocks of the chart's time go here
+
   Vec3<double> X() const { return spatial(to_phase(y).x); }
   void begin_slice() {
-    before = y, V_before = V, fate_before = fate;
+    before = y, V_before = V, turning_before = turning, fate_before = fate;
     node_before = std::exchange(node, UINT32_MAX);
   }
 };
@@ -75,10 +77,16 @@ void advance_pack(Stepper& stepper, const ScanSetting<M>& setting, ScanPack<S>& 
   }
 }
 
+/// Close to a horizon that lies ahead in infinite chart time rays creep, and with spin are dragged round and
+/// round. From the first rate on nothing is asked of them, at the second they stand.
+inline constexpr double kFastRate = 8, kMostRate = 40;
+
 template <Metric M>
 ScanFate fate_of(const ScanSetting<M>& setting, const ScanRay& ray, bool stuck) {
   const double end = ray.end;
   const double far = norm(ray.X());
+  if constexpr (is_central<M>())
+    if (ray.rate > kMostRate) return ScanFate::stands;
   if (stuck || (end != 0 && end < as_scalar<double>(Ending::sky))) return ScanFate::stands;
   const bool escaped = (end == as_scalar<double>(Ending::sky) && far > setting.reach) ||
                        (end == as_scalar<double>(Ending::second_sky) && far < setting.inside);
@@ -115,6 +123,7 @@ void advance_rays(Stepper& stepper, const ScanSetting<M>& setting, Pool<ScanRay>
       ray.y = State<double>::map([&](std::size_t c) { return get(pack.flight.y[c]); });
       ray.V = Vec3<double>::map([&](std::size_t c) { return get(pack.flight.dy[c + 1]); });
       ray.h = get(pack.flight.h), ray.growth = get(pack.flight.growth), ray.turning = get(pack.turning);
+      ray.rate = get(pack.flight.dy[0]) / ray.y[4];
       ray.end = get(pack.end);
       ray.fate = fate_of(setting, ray, stuck[lane]);
     }
@@ -145,7 +154,7 @@ struct ScanStart {
 /// The Endings of rays.
 template <class S, class Stepper, Metric M>
 void find_endings(Stepper& stepper, ScanSetting<M> setting, Pool<ScanRay>& rays) {
-  setting.reach = 0, setting.inside = kFar, setting.most_turning = 100;
+  setting.reach = 0, setting.inside = kFar, setting.most_turning = kFar;
   double lambda = 0, next = length_scale(setting.system.metric, to_phase(rays[0].y).x) / norm(rays[0].V);
   for (int i = 0; i < 60; ++i) {
     Pool<std::uint32_t> going(rays.size());
@@ -179,13 +188,14 @@ CriticalCurve find_critical_curve(Stepper& stepper, const ScanSetting<M>& settin
     return rays;
   };
   const auto poles = endings_at([](std::size_t j) { return j % 2 == 0 ? 0.0 : std::numbers::pi; });
-  if (poles[0].end == poles[1].end) return out;
+  const auto kind = [](const ScanRay& ray) { return ray.fate == ScanFate::stands ? -1 : ray.end; };
+  if (kind(poles[0]) == kind(poles[1])) return out;
   std::array<double, CriticalCurve::kAngles> low{}, high{};
   for (double& angle : high) angle = std::numbers::pi;
   for (int i = 0; i < kBisections; ++i) {
     const auto rays = endings_at([&](std::size_t j) { return 0.5 * (low[j] + high[j]); });
     for (std::size_t j = 0; j < CriticalCurve::kAngles; ++j)
-      (rays[j].end == poles[0].end ? low[j] : high[j]) = 0.5 * (low[j] + high[j]);
+      (kind(rays[j]) == kind(poles[0]) ? low[j] : high[j]) = 0.5 * (low[j] + high[j]);
   }
   out.exists = true;
   for (std::size_t j = 0; j < CriticalCurve::kAngles; ++j) out.psi[j] = 0.5 * (low[j] + high[j]);
