@@ -30,6 +30,31 @@ std::vector<Given> options_by_numbers(const GeodesicOptions& o) {
           {"--eta", !o.eta.empty()}};
 }
 
+/// --connect asks for geodesics by their ends: nothing else says how they run, and there is no picture.
+void check_connect(const GeodesicOptions& o) {
+  const std::vector<Given> needed = {
+      {"--metric", !o.metric.empty()}, {"--event", !o.event.empty()}, {"--source", !o.source.empty()}};
+  const std::vector<Given> others = {{"SCENE", !o.scene.empty()},
+                                     {"--pixel", !o.pixel.empty()},
+                                     {"--direction", !o.direction.empty()},
+                                     {"--speed", !o.speed.empty()},
+                                     {"--at", !o.at.empty()},
+                                     {"--points", o.points != 0},
+                                     {"--paths", !o.paths.empty()},
+                                     {"--accuracy", !o.accuracy.empty()},
+                                     {"--integrator", !o.integrator.empty()},
+                                     {"--fan", o.fan != 0},
+                                     {"--plane", !o.plane.empty()},
+                                     {"--killing", !o.killing.empty()},
+                                     {"--eta", !o.eta.empty()},
+                                     {"--plot", !o.plot.empty()},
+                                     {"--csv", o.csv}};
+  for (const auto& [name, is_given] : others)
+    if (is_given) throw InputError(name, "does not go with --connect");
+  for (const auto& [name, is_given] : needed)
+    if (!is_given) throw InputError(name, "is required with --connect");
+}
+
 }  // namespace
 
 void add_geodesic_options(CLI::App& app, GeodesicOptions& o) {
@@ -60,12 +85,21 @@ void add_geodesic_options(CLI::App& app, GeodesicOptions& o) {
   app.add_option("--killing", o.killing,
                  "Carries the geodesic along the Killing field of this constant of motion");
   app.add_option("--eta", o.eta, "With --killing: how far, e1,e2,...");
+  app.add_flag("--connect", o.connect,
+               "All light that reaches --event from an observer at rest at --source, by affine length");
+  app.add_option("--source", o.source, "With --connect: x,y,z of the source");
+  app.add_option("--windings", o.windings,
+                 "With --connect: how often the light may go round, counted from 1 (default 1)")
+      ->check(CLI::Range(1, 1000));
   app.add_option("--plot", o.plot, "Draws the x-y projection into this file (.svg)");
   auto* json = app.add_flag("--json", o.json, "Report as JSON");
   app.add_flag("--csv", o.csv, "Report as CSV (default without --plot)")->excludes(json);
 }
 
 void check_combination(const GeodesicOptions& o) {
+  if (o.connect) return check_connect(o);
+  if (!o.source.empty()) throw InputError("--source", "needs --connect");
+  if (o.windings != 0) throw InputError("--windings", "needs --connect");
   if (!o.scene.empty()) {
     for (const auto& [name, is_given] : options_by_numbers(o))
       if (is_given) throw InputError(name, "does not go with a scene, which says all of it");

@@ -18,8 +18,9 @@ struct GeodesicOptions {
   std::string paths, accuracy, integrator;
   std::string plane, killing, eta;
   std::string plot;
-  int fan = 0, points = 0;
-  bool json = false, csv = false;
+  std::string source;
+  int fan = 0, points = 0, windings = 0;
+  bool json = false, csv = false, connect = false;
 };
 
 void add_geodesic_options(CLI::App& app, GeodesicOptions& options);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/trace/connection.h"
-#include "metrics/goedel_moving_lamp.h"
+#include "metrics/goedel_fast_lamp.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -48,6 +48,13 @@ Connection<S> connect_at_rest(const Goedel& metric, const Vec4<S>& event, const 
   out.tau = tau;
   out.found = light.exists;
   return out;
+}
+
+template <class S>
+GoedelEmission<S> emission_of(const Goedel& metric, const Vec4<S>& event, const LampLine<Goedel>& line,
+                              const GoedelBranch& branch, int which) {
+  const GoedelEmissionSearch<S> search{metric, event, line, branch};
+  return branches_of_lobe(metric, line) == 2 ? search.only() : FastLampSearch<S>{search}.emission(which);
 }
 
 /// Light that a lamp sends to an event, of branch `branch` < branches(metric, line, windings). On caustics

@@ -48,6 +48,7 @@ struct GoedelFold {
   Mask<S> exists;
   S zeta;  ///< 0 where the lobe does not exist
   S p, F;
+  S decline;  ///< dF/dzeta
 
   GoedelFold(const GoedelBranch& branch, const S& zeta_of_place) {
     constexpr double kQuarter = 0.5 * std::numbers::pi;
@@ -65,7 +66,9 @@ struct GoedelFold {
     };
     const S eta = bracketed_zero(condition, S(0.0), most, guess, exists, 1e-7);
     p = sqrt(max((room - eta) * (end - eta + zeta), S(0.0)));
-    F = GoedelPhase<S>(branch, p, zeta).F;
+    const GoedelPhase<S> phase(branch, p, zeta);
+    F = phase.F;
+    decline = p * zeta * (phase.cosine - phase.sinc) / (phase.psi * phase.psi);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/trace/integrated_geodesic.h"
 #include "core/trace/integrated_tracer.h"
+#include "core/trace/shoot_connections.h"
 #include "metrics/make_metric.h"
 
 namespace nullcone {
@@ -23,6 +24,15 @@ std::vector<GeodesicPoint> NULLCONE_GEODESIC_INTEGRATED(std::span<const double> 
   using namespace NULLCONE_ISA;
   return integrated_geodesic(make_metric<NULLCONE_METRIC>(values), Vec4<double>{event}, Vec4<double>{k},
                              lambda, accuracy);
+}
+
+ConnectionsReport NULLCONE_CONNECT_BY_SHOOTING(std::span<const double> values, const Event& event,
+                                               const Triple& source, int windings) {
+  using namespace NULLCONE_ISA;
+  if constexpr (!HasConnections<NULLCONE_METRIC> && is_stationary<NULLCONE_METRIC>())
+    return shoot_connections(make_metric<NULLCONE_METRIC>(values), kReference, Vec4<double>{event},
+                             Vec3<double>{source}, windings);
+  return {{}, false};
 }
 
 }  // namespace nullcone

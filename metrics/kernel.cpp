@@ -12,10 +12,32 @@ std::unique_ptr<Tracer> NULLCONE_PREPARE_INTEGRATED(std::span<const double> valu
 std::vector<GeodesicPoint> NULLCONE_GEODESIC_INTEGRATED(std::span<const double> values, const Event& event,
                                                         const Event& k, std::span<const double> lambda,
                                                         const Accuracy& accuracy);
+ConnectionsReport NULLCONE_CONNECT_BY_SHOOTING(std::span<const double> values, const Event& event,
+                                               const Triple& source, int windings);
 
 }  // namespace nullcone
 
 NULLCONE_KERNEL_BEGIN
+
+template <HasConnections M>
+ConnectionsReport connections(const M& metric, const Event& event, const Triple& source, int windings) {
+  LampLine<M> lamp{metric, true, {{event[0], source[0], source[1], source[2]}}, {}, {}};
+  ConnectionsReport out;
+  for (int branch = 0; branch < branches(metric, windings); ++branch) {
+    const Connection<double> c = connect(metric, Vec4<double>{event}, lamp, branch);
+    if (!c.found) continue;
+    const ConnectionReport one = {c.lambda,           event[0] - c.emitted[0],
+                                  spatial(c.past).c,  std::sqrt(std::fabs(c.det)),
+                                  c.det < 0 ? -1 : 1, branch / branches(metric, 1)};
+    // Nearly in order as they come. (std::sort would be code that kernels share.)
+    std::size_t place = out.connections.size();
+    out.connections.push_back(one);
+    for (; place > 0 && one.lambda < out.connections[place - 1].lambda; --place)
+      out.connections[place] = out.connections[place - 1];
+    out.connections[place] = one;
+  }
+  return out;
+}
 
 template <Metric M>
 class Kernel final : public Spacetime {
@@ -63,8 +85,10 @@ class Kernel final : public Spacetime {
     return out;
   }
 
-  ConnectionsReport connect(std::span<const double>, const Event&, const Triple&, int) const override {
-    return {};
+  ConnectionsReport connect(std::span<const double> values, const Event& event, const Triple& source,
+                            int windings) const override {
+    if constexpr (HasConnections<M>) return connections(make_metric<M>(values), event, source, windings);
+    return NULLCONE_CONNECT_BY_SHOOTING(values, event, source, windings);
   }
 
   double walk(std::span<const double> values, const Event& event, const Event& k, double step,

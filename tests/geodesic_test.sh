@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# nullcone-geodesic from outside: one ray, families, the ray of a pixel, pictures; facts of physics, and refusals.
+# nullcone-geodesic from outside: one ray, families, light between two places, the ray of a pixel, pictures; facts of physics, and refusals.
 # Usage: geodesic_test.sh BIN_DIR SOURCE_DIR
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/checks.sh"
@@ -118,6 +118,37 @@ ray --metric kerr_schild --event 0,20,3,1 --direction 0,1,0 --at=-10,10 --killin
 expect "all(p['status'] == 'ok' and abs(p['square']) < 1e-7 for p in d['members'][0]['points'])"
 ray "${flat[@]}" --at 0 --killing p_x --eta 2 --json
 expect "near(events(d['members'][0])[0], (1, 4, 3, 4), 1e-14)"
+
+# All light between two places: reference cases, and facts.
+connected() { ray --connect "$@" --json; }
+connected --metric goedel --event 5,1.1,0.5,0 --source 0.4,-0.9,0
+expect "[c['winding'] for c in d['connections']] == [0, 0] and [c['parity'] for c in d['connections']] == [1, -1] and d['complete']"
+expect "near(d['connections'][0]['view'], (0.5289170255856152, -0.84867354150207, 0), 1e-12)"
+expect "near([c['lambda'] for c in d['connections']], (2.1920722140414814, 4.091113093138105), 1e-12)"
+expect "near([c['travel_time'] for c in d['connections']], (0.6308009691705107, 0.7036803829655589), 1e-12)"
+expect "near([c['area_distance'] for c in d['connections']], (1.3350857044144149, 1.823906032166264), 1e-12)"
+keep
+# There and back differ in time and direction, but not in length and focusing.
+connected --metric goedel --event 5,0.4,-0.9,0 --source 1.1,0.5,0
+expect "near([c['travel_time'] for c in d['connections']], (1.898900186171587, 1.9717795999666354), 1e-12)"
+expect "all(near([c[k] for c in d['connections']], [c[k] for c in closed['connections']], 1e-12) for k in ('lambda', 'area_distance'))"
+# A ray that is sent that way arrives there.
+ray --metric goedel --event 5,1.1,0.5,0 --direction=-0.5289170255856152,0.84867354150207,0 --at=-2.1920722140414814 --json
+expect "near(events(d)[0], (5 - 0.6308009691705107, 0.4, -0.9, 0), 1e-12)"
+connected --metric goedel --event 0,0,0,0 --source 1.8,0,6 --windings 6
+expect "[c['winding'] for c in d['connections']] == [3, 3, 4, 4, 5, 5]"
+expect "abs(d['connections'][0]['travel_time'] - 9.940244918339365) < 1e-11"
+connected --metric goedel --event 0,0,0,0 --source 2.2,0,0 --windings 50
+expect "d['connections'] == [] and d['complete']"  # beyond the horizon
+connected --metric goedel --event 3,1,2,0 --source 1,2,0
+expect "[c['area_distance'] for c in d['connections']] == [0]"  # its own image, a ring
+connected --metric minkowski --event 5,1,2,3 --source 1,2,0 --windings 9
+expect "[list(c.values()) for c in d['connections']] == [[3, 3, [0, 0, -1], 3, 1, 0]]"
+connected --metric goedel --set a=1e15 --event 5,1,2,3 --source 1,-2,0
+expect "near([d['connections'][0][k] for k in ('lambda', 'travel_time', 'area_distance')], (5, 5, 5), 1e-13)"
+ray --connect --metric goedel --event 5,1.1,0.5,0 --source 0.4,-0.9,0
+grep -q '^ *lambda *travel_time' out || fault "the table of connections has no head"
+[ "$(wc -l <out)" = 3 ] || fault "the table of connections has $(wc -l <out) lines"
 
 # The ray of a pixel.
 python3 - "$source_dir/scenes/goedel_earth.json" <<'PYTHON' || fault "cannot make scenes"
@@ -257,6 +288,21 @@ refused "--eta: the field does not carry so far" --metric goedel --event 0,1e5,0
 for points in 0 1 -5 1.5 x 1000001; do refused "--points" "${goedel[@]}" --at 0,1 --points $points; done
 refused "--points: needs at least two values" "${goedel[@]}" --at 1 --points 5
 refused "--csv" "${goedel[@]}" --at 1 --json --csv
+between=(--connect --metric goedel --event 0,0,0,0 --source 1,0,0)
+for windings in 0 -1 1.5 x 1001; do refused "--windings" "${between[@]}" --windings $windings; done
+for source in 1,2 1,2,3,4 nan,0,0 x; do refused "--source" --connect --metric goedel --event 0,0,0,0 --source $source; done
+for event in 1,2,3 inf,0,0,0; do refused "--event" --connect --metric goedel --event $event --source 1,0,0; done
+refused "--source: is required with --connect" --connect --metric goedel --event 0,0,0,0
+refused "--event: is required with --connect" --connect --metric goedel --source 0,0,0
+refused "--metric: is required with --connect" --connect --event 0,0,0,0 --source 0,0,0
+refused "--source: needs --connect" "${goedel[@]}" --at 1 --source 1,0,0
+refused "--windings: needs --connect" "${goedel[@]}" --at 1 --windings 2
+refused "--source: no observer is at rest there" --connect --metric kerr_schild --event 0,9,0,0 --source 1,0,0
+for other in "--direction 1,0,0" "--speed .5" "--at 1" "--points 9" "--paths closed" "--accuracy draft" "--integrator dopri5" \
+             "--fan 3" "--plane 0,0,1" "--killing K4" "--eta 1" "--plot a.svg" "--csv" "--pixel 1,1" "earth.json"; do
+  # shellcheck disable=SC2086
+  refused "does not go with --connect" "${between[@]}" $other
+done
 echo before >before.svg
 for file in a.png .svg none/a.svg folder.svg /proc/a.svg before.svg/a.svg; do
   refused "--plot $file" "${goedel[@]}" --at 1 --plot $file

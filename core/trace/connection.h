@@ -1,8 +1,10 @@
 // Null geodesics from a lamp to an event: what lights a surface.
 //
 // A metric with closed-form paths offers (metrics/<name>_connect.h, found by overloading)
-//   branches(metric, windings) -> int     how many kinds of connections there are, each with one solution at
-//   most connect(metric, event, line, branch)  the solution of one kind, for Vec4<S> event and a LampLine
+//   branches(metric, windings) -> int     how many kinds of connections there are with lamps at rest, each
+//   with one solution at most
+//   branches(metric, line, windings) -> int    with this lamp: it may have more if it moves
+//   connect(metric, event, line, branch)  the solution of one kind, for Vec4<S> event and a LampLine
 // Others are found by shooting (shooting.h).
 #pragma once
 

@@ -186,8 +186,30 @@ class ConnectedLamps {
   std::unique_ptr<PlacedLamp<LampLine<M>>[]> lamps_;
 };
 
+/// Where neither is to be had.
+template <Metric M>
+class NoLamps {
+ public:
+  bool place(const M&, const Scene&, const MarchObject<M>*, std::size_t, Unfit& unfit) {
+    unfit = {Unfit::Thing::lamp, 0, "cannot shine: light of lamps is found in stationary spacetimes only", 0};
+    return false;
+  }
+  bool is_body(std::size_t, std::uint32_t) const { return false; }
+  double tau_origin(std::size_t) const { return 0; }
+  Vec4<double> event_at_observation(std::size_t) const { return {}; }
+  std::uint64_t doubts() const { return 0; }
+
+  template <class S, class Group, class LetThrough>
+  void illuminate(const LightRules&, const LitPoint<S>&, const Group&, std::uint32_t, double,
+                  const LetThrough&, const HitRoom&) const {}
+};
+
 template <Metric M>
 struct LampsOf {
+  using Type = NoLamps<M>;
+};
+template <Metric M>
+requires(!HasConnections<M> && is_stationary<M>()) struct LampsOf<M> {
   using Type = ScannedLamps<M>;
 };
 template <HasConnections M>

@@ -93,7 +93,7 @@ Shade<S> light_through(Stepper& stepper, const ShadowSetting<M>& setting, std::u
     trails[k] = shadow_trail(march.objects[k], to_phase(flight.y), to_phase(flight.dy),
                              march.objects[k].number == own);
   Mask<S> active = wanted & (flight.lambda < length);
-  Shade<S> out{S(1.0), active & !active};
+  Shade<S> out{S(1.0), Mask<S>(active & !active)};
   while (any(active)) {
     const Attempt<S> a = attempt(stepper, march.system, march.accuracy, flight,
                                  next_step(metric, flight, length - flight.lambda));
