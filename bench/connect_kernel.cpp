@@ -1,7 +1,6 @@
 // The timed loop over connections, compiled once an instruction set.
-#include <ctime>
-
 #include "bench/connect.h"
+#include "bench/cpu_seconds.h"
 #include "core/trace/objects.h"
 #include "metrics/goedel_kernel.h"
 #include "metrics/minkowski_kernel.h"
@@ -9,12 +8,6 @@
 NULLCONE_KERNEL_BEGIN
 
 using namespace nullcone::study;
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 template <Metric M>
 LampLine<M> lamp(const M& metric, const ConnectCase& given) {

@@ -1,7 +1,6 @@
 // The timed part of the study, compiled once an instruction set: the tracer's loop over rays, and the bare
 // stepper.
-#include <ctime>
-
+#include "bench/cpu_seconds.h"
 #include "bench/work_precision.h"
 #include "core/trace/march.h"
 #include "metrics/goedel_kernel.h"
@@ -11,12 +10,6 @@
 NULLCONE_KERNEL_BEGIN
 
 using namespace nullcone::study;
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 template <class F>
 double fastest(int repeats, F&& f) {

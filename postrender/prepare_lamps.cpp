@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "postrender/renderer.h"
+#include "postrender/shading_in_time.h"
 
 namespace nullcone::postrender {
 
@@ -54,16 +55,7 @@ std::vector<Renderer::LampLight> Renderer::add_lamps(Shading& shading, const Loo
       if (lamp.shines_along(path))
         shines.paths.push_back(number * static_cast<std::size_t>(manifest_.light_paths) +
                                static_cast<std::size_t>(path));
-    const std::size_t usual = add(lamp.light);
-    std::vector<Slice> slices;
-    for (const TimeSliceLook& slice : lamp.time_slices) {
-      const AppearanceLook whole = inherited(slice.appearance, lamp.light);
-      slices.push_back(slice.when);
-      slices.back().appearance = add(whole);
-      slices.back().timeline = whole.spectrum_in_time.timeline;
-    }
-    shines.when = {entry.tau_origin, usual, SliceTable(std::move(slices)),
-                   lamp.light.spectrum_in_time.timeline};
+    shines.when = shading_in_time(entry.tau_origin, lamp.light, lamp.time_slices, add);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include "postrender/color.h"
 #include "postrender/needed_channels.h"
 #include "postrender/renderer.h"
+#include "postrender/shading_in_time.h"
 #include "postrender/texture_maker.h"
 
 namespace nullcone::postrender {
@@ -93,16 +94,7 @@ Shading Renderer::prepare(const Look& look) {
     const auto add = [&](const AppearanceLook& appearance) {
       return add_appearance(shading, textures, appearance, object, lamps, id, look);
     };
-    const std::size_t usual = add(object.appearance);
-    std::vector<Slice> slices;
-    for (const TimeSliceLook& slice : object.time_slices) {
-      const AppearanceLook whole = inherited(slice.appearance, object.appearance);
-      slices.push_back(slice.when);
-      slices.back().appearance = add(whole);
-      slices.back().timeline = whole.spectrum_in_time.timeline;
-    }
-    shading.objects.push_back({entry.tau_origin, usual, SliceTable(std::move(slices)),
-                               object.appearance.spectrum_in_time.timeline});
+    shading.objects.push_back(shading_in_time(entry.tau_origin, object.appearance, object.time_slices, add));
   }
   note_light(shading, look, lamps);
   textures.read_films(dataset_, shading);

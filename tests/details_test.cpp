@@ -199,7 +199,7 @@ TEST(Details, ChangesAreThoseOfPixelsAndNotOfSamples) {
             .scene;
     scene.camera.samples = samples;
     const auto tracer = prepare_scene(find_spacetime("minkowski"), scene, "test");
-    const Band band = gather(trace_band(*tracer, scene.camera, true, 0), scene);
+    const Band band = gather(trace_band(*tracer, scene, true, 0), scene);
     change[samples > 1] = band.hits.duv[0].at(0);
   }
   EXPECT_GT(change[0], 0);

@@ -92,4 +92,15 @@ inline Object ball(const Event& event, double radius, const Triple& velocity = {
   return out;
 }
 
+/// A wall in the plane x = 10, seen from its front.
+inline Object wall(double edge = 12) {
+  Object out;
+  out.name = "wall";
+  out.shape.type = ShapeType::quad;
+  out.shape.edges = {edge, edge, 0};
+  out.placing = moving({0, 10, 0, 0}, {0, 0, 0});
+  out.placing.axes = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+  return out;
+}
+
 }  // namespace nullcone::test

@@ -79,7 +79,8 @@ TEST(LitScenes, the_falling_sphere_is_lit_with_delays_and_shifts) {
   EXPECT_GT(most, 1.1);
   EXPECT_LT(first, -0.3);  // the light's delay on its way to the sphere
   for_each_lit(frozen, 1, [&](const HitRecord&, std::span<const HitLight> light) {
-    if (light[0].E > 0) EXPECT_NEAR(light[0].shift, 1, 1e-12);
+    if (light[0].E == 0) return;
+    EXPECT_NEAR(light[0].shift, 1, 1e-12);
   });
 }
 
@@ -103,7 +104,7 @@ TEST(LitScenes, every_instruction_set_sees_the_same_light) {
   for (const std::string_view isa : instruction_sets()) {
     Scene scene = read_scene(text, "test", metric_descriptions());
     const Dataset dataset = trace_scene(find_spacetime("goedel", isa), scene, "test");
-    if (!hash.empty()) EXPECT_EQ(dataset.manifest.hits_sha256, hash) << isa;
+    EXPECT_TRUE(hash.empty() || dataset.manifest.hits_sha256 == hash) << isa;
     hash = dataset.manifest.hits_sha256;
     EXPECT_FALSE(dataset.hits.light.empty());
   }

@@ -199,8 +199,9 @@ Dataset trace_scene(const Spacetime& spacetime, Scene scene, const std::string& 
   Dataset dataset;
   dataset.manifest = describe(spacetime, scene, *tracer);
   dataset.hits = empty_hits(dataset.manifest);
-  dataset.manifest.effort.core_seconds = trace_bands(*tracer, scene, {0, scene.camera.height}, threads, progress,
-                                              [&](const Band& band) { dataset.append(band); });
+  dataset.manifest.effort.core_seconds =
+      trace_bands(*tracer, scene, {0, scene.camera.height}, threads, progress,
+                  [&](const Band& band) { dataset.append(band); });
   dataset.manifest.effort.light_doubts = tracer->light_doubts();
   fingerprint(dataset);
   return dataset;
