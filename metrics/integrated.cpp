@@ -29,9 +29,11 @@ std::vector<GeodesicPoint> NULLCONE_GEODESIC_INTEGRATED(std::span<const double> 
 ConnectionsReport NULLCONE_CONNECT_BY_SHOOTING(std::span<const double> values, const Event& event,
                                                const Triple& source, int windings) {
   using namespace NULLCONE_ISA;
-  if constexpr (!HasConnections<NULLCONE_METRIC> && is_stationary<NULLCONE_METRIC>())
-    return shoot_connections(make_metric<NULLCONE_METRIC>(values), kReference, Vec4<double>{event},
+  if constexpr (!HasConnections<NULLCONE_METRIC> && is_stationary<NULLCONE_METRIC>()) {
+    const Accuracy accuracy{kReference.rtol};  // its address would be shared between instruction sets
+    return shoot_connections(make_metric<NULLCONE_METRIC>(values), accuracy, Vec4<double>{event},
                              Vec3<double>{source}, windings);
+  }
   return {{}, false};
 }
 

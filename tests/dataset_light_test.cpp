@@ -50,6 +50,7 @@ class KeyTracer final : public Tracer {
   }
   double tau_origin(std::size_t) const override { return 0; }
   double distortion(std::size_t) const override { return 0; }
+  std::uint64_t light_doubts() const override { return 0; }
   std::uint32_t object_about_lamp(std::size_t) const override { return 0; }
   double lamp_tau_origin(std::size_t lamp) const override { return 0.5 + static_cast<double>(lamp); }
 };

@@ -35,8 +35,9 @@ TEST_F(DatasetFile, InfoListsLampsAndTheRangesOfTheirLight) {
   EXPECT_EQ(verify_file(path), std::vector<std::string>{});
   DatasetReader reader(path);
   const Report report = summary(reader, 0);
-  EXPECT_EQ(report["lights"].dump(),
-            R"([{"name":"sun","tau_origin":0.25},{"name":"moon","tau_origin":-3.0}])");
+  EXPECT_EQ(
+      report["lights"].dump(),
+      R"([{"name":"sun","tau_origin":0.25,"lit":2,"capped":0},{"name":"moon","tau_origin":-3.0,"lit":1,"capped":0}])");
   EXPECT_EQ(report["light_paths"], 2);
   EXPECT_EQ(report["format"], 3);
   EXPECT_EQ(report["channels"].size(), 3u + 16);

@@ -62,7 +62,7 @@ expect "all(d['hits']['ranges'][f'light.sun.{i}.E'][0] >= 0 for i in range(3))"
 run 0 "$info" lit.exr --json --pixel 10,9
 expect "all(set(h['lights']) == {'sun'} and len(h['lights']['sun']) <= 3 for h in d['hits'])"
 run 0 "$info" lit.exr
-says '^lamps, 3 paths each$'
+says '^lamps, 3 paths each; lit: '
 says '^  sun +-?[0-9]'
 says '^  light.sun.2.E +[0-9].* 1/scene\^2$'
 run 0 "$info" few.exr --json

@@ -62,7 +62,7 @@ TEST(IntegratedIllumination, is_that_of_closed_forms) {
     const Compared here = compare(closed, integrated, 1e-6);
     all.lit += here.lit, all.shadowed += here.shadowed, all.differ += here.differ;
   }
-  EXPECT_GT(all.lit, 3000u);
+  EXPECT_GT(all.lit, 2000u);
   EXPECT_LE(all.differ, all.lit / 500);  // rims of shadows
 }
 
@@ -72,6 +72,7 @@ TEST(IntegratedIllumination, is_that_of_flat_space_where_gravity_is_weak) {
   hole.mass = 1e-9;
   Scene scene = two_spheres({0, 5, 0.2, 0.3}, {0, 4.1, 0.5, 0.8}, {0, 3.2, 0.8, 1.4});
   scene.observer.event = {0, 2, 0, 0.3};
+  scene.camera = camera(48, 48, 0.25);
   scene.max_lookback = 1e3;
   const LightSink flat = lit(Minkowski{}, scene);
   scene.integrated = true;

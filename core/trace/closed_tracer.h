@@ -84,6 +84,7 @@ class ClosedTracer final : public Tracer {
   }
 
   double tau_origin(std::size_t object) const override { return clocks_[object].at_observation; }
+  std::uint64_t light_doubts() const override { return 0; }
   std::uint32_t object_about_lamp(std::size_t lamp) const override {
     const Vec4<double> event = lamps_[lamp].lines[0].event(lamps_[lamp].clock.origin);
     for (std::uint32_t number = 1; number <= rules_.objects; ++number) {

@@ -73,7 +73,7 @@ class Tracer {
   /// first order where the spacetime has no rigid motions.
   virtual double distortion(std::size_t object) const = 0;
   /// How often, in all bands so far, light of a lamp may have been missed.
-  virtual std::uint64_t light_doubts() const { return 0; }
+  virtual std::uint64_t light_doubts() const = 0;
   /// Number from 1 of an opaque object that holds lamp number `lamp` (from 0) at the time of the observation
   /// and is not its body; 0: none.
   virtual std::uint32_t object_about_lamp(std::size_t lamp) const = 0;
