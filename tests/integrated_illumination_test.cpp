@@ -70,7 +70,7 @@ TEST(IntegratedIllumination, is_that_of_flat_space_where_gravity_is_weak) {
   // A hole of a tiny mass far from everything: light is found by shooting, and shadows along integrated rays.
   KerrSchild hole;
   hole.mass = 1e-9;
-  Scene scene = two_spheres({0, 5, 0.2, 0.3}, {0, 4.1, 0.5, 0.8}, {0, 3.2, 0.8, 1.4});
+  Scene scene = two_spheres({0, 5, 0.2, 0.3}, {0, 4.1, 0.6, 0.95}, {0, 3.2, 0.8, 1.4});
   scene.observer.event = {0, 2, 0, 0.3};
   scene.camera = camera(48, 48, 0.25);
   scene.max_lookback = 1e3;

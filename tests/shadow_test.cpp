@@ -20,6 +20,29 @@ FlatObject at_rest(std::uint32_t number, const Vec3<double>& place, const S& sha
           place,  ball, {Marched<FixedMap, ChartBody<Minkowski>, S>{{place, body.axes, 1}, body, shape}}};
 }
 
+TEST(Shadows, NoSurfaceShadesItselfHoweverLongTheWay) {
+  // Steps add up to the length but for rounding: what is left must not count as a step of its own.
+  const FlatObject board = at_rest(1, {{0, 0, 0}}, Box{100, 100, 0});
+  const double opaque = 1;
+  const MarchSetting<Minkowski> march{{{}}, kBalanced, 1e6, &board, 1, {}, 1000, kFar, 0};
+  PrinceDormand87<Pack> stepper;
+  Random random(6);
+  int dark = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3<double> from = {{random.uniform(-50, 50), random.uniform(-50, 50), 0}},
+                       way = Vec3<double>{{random.uniform(-50, 50), random.uniform(-50, 50),
+                                           random.uniform(1, 40)}} -
+                             from,
+                       n = normalised(way);
+    const auto shade = light_through(stepper, ShadowSetting<Minkowski>{&march, &opaque, 0}, 1,
+                                     convert<Pack>(Vec4<double>{{1, from[0], from[1], 0}}),
+                                     convert<Pack>(Vec4<double>{{-1, n[0], n[1], n[2]}}), Pack(norm(way)),
+                                     Pack(0.0) == Pack(0.0));
+    dark += shade.through.get(0) < 1;
+  }
+  EXPECT_EQ(dark, 0);
+}
+
 TEST(Shadows, OfSpheresBoxesAndRectangles) {
   // Between the plane z = 0 and a lamp at (0, 0, 10): a glass sphere, a box, a sheet, and the lamp's globe.
   const std::array<FlatObject, 5> objects = {

@@ -95,8 +95,9 @@ Shade<S> light_through(Stepper& stepper, const ShadowSetting<M>& setting, std::u
   Mask<S> active = wanted & (flight.lambda < length);
   Shade<S> out{S(1.0), Mask<S>(active & !active)};
   while (any(active)) {
-    const Attempt<S> a = attempt(stepper, march.system, march.accuracy, flight,
-                                 next_step(metric, flight, length - flight.lambda));
+    const S rest = length - flight.lambda;
+    const Attempt<S> a =
+        attempt(stepper, march.system, march.accuracy, flight, next_step(metric, flight, rest));
     const State<S> y = flight.y;
     const Phase<S> from = to_phase(y), rate = to_phase(flight.dy), to = to_phase(a.y1),
                    end_rate = to_phase(a.dy1);
@@ -115,7 +116,8 @@ Shade<S> light_through(Stepper& stepper, const ShadowSetting<M>& setting, std::u
     const auto stuck = active & !a.accepted & !(progress > S(1e-14) * length_scale(metric, from.x));
     flight.y = select(moves, a.y1, flight.y);
     flight.dy = select(moves, a.dy1, flight.dy);
-    flight.lambda = select(moves, flight.lambda + a.h, flight.lambda);
+    // Rounding must not leave a last step of nothing: no curve can be laid through it.
+    flight.lambda = select(moves, select(a.h == rest, length, flight.lambda + a.h), flight.lambda);
     out.lost = out.lost | stuck | (active & (flight.steps >= S(kStepLimit)));
     active = active & !out.lost & (out.through > S(0.0)) & (flight.lambda < length);
   }

@@ -48,6 +48,13 @@ Mask<S> comes_near(const MarchSetting<M>& setting, const Flight<S>& flight, cons
   return near & a.accepted;
 }
 
+/// Whether a ray has come as far as it shall. What rounding leaves is no step: no curve can be laid through
+/// it.
+template <class S>
+auto is_at_end(const S& lambda, double limit) {
+  return lambda >= S((1 - 4e-15) * limit);
+}
+
 /// One attempt of a step for every active lane.
 template <class Stepper, Metric M, class S>
 void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) {
@@ -73,7 +80,7 @@ void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) 
     m.turning.turns = select(moves, m.turning.at(spatial(to_phase(flight.y).x)), m.turning.turns);
   m.broken = m.broken | (stuck & !a.finite);
   m.given_up = m.given_up | stuck | (m.active & (flight.steps >= S(kStepLimit)) & !near);
-  m.active = m.active & !near & !m.given_up & (m.end == S(0.0)) & (flight.lambda < limit);
+  m.active = m.active & !near & !m.given_up & (m.end == S(0.0)) & !is_at_end(flight.lambda, setting.lookback);
 }
 
 template <class S>
@@ -146,7 +153,7 @@ void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>
       end_ray(setting, flights, ray, Status::step_limit, 0);
     } else if (how != 0) {
       end_ray(setting, flights, ray, status_of(how), how);
-    } else if (!(flights.lambda[ray] < setting.lookback)) {
+    } else if (is_at_end(flights.lambda[ray], setting.lookback)) {
       end_ray(setting, flights, ray, Status::lookback_reached, 0);
     } else {
       flights.list[flights.listed++] = static_cast<std::uint32_t>(ray);
