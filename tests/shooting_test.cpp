@@ -56,6 +56,7 @@ void expect_images(const json& c, const Found& found) {
 
 TEST(Shooting, GoedelAsInClosedForm) {
   for (const json& c : cases_of("godel_two_point")) {
+    if (kSanitized && c["id"] != "godel.twopoint.4_z") continue;
     const json& in = c["inputs"];
     const double a = in["a"], r0 = in["r0"], phi0 = in["phi0"];
     const Vec3<double> lamp = {{r0 * std::cos(phi0), r0 * std::sin(phi0), in["z0"]}};
