@@ -19,8 +19,10 @@ using Report = nlohmann::ordered_json;
 /// `worst`: so many of the worst rays are listed.
 Report summary(DatasetReader& reader, std::size_t worst);
 
-/// All records of the pixel x, y of the picture. Throws InputError outside the window that the file holds.
+/// All records of the pixel x, y of the picture, from a file or from memory. Throws InputError outside the
+/// window that is there.
 Report pixel_records(DatasetReader& reader, int x, int y);
+Report pixel_records(const Dataset& dataset, int x, int y);
 
 /// The file format that this program writes: its version, channels and statuses.
 Report format_table();

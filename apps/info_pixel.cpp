@@ -24,15 +24,22 @@ Report ray_record(const Rays& rays, std::size_t i) {
           {"drift", number(rays.drift[i])}};
 }
 
-/// One record, or with samples a list of them.
-Report ray_records(const Manifest& m, const Rays& rays, int x) {
+/// A pixel of scan lines that are in memory.
+struct PixelPlace {
+  std::size_t row, column;
+};
+
+/// One record, or with samples a list of them; null where rays were left out.
+Report ray_records(const Manifest& m, const Rays& rays, PixelPlace at) {
+  if (rays.status.empty()) return nullptr;
   const auto n = static_cast<std::size_t>(m.samples), wide = n * static_cast<std::size_t>(m.width);
-  if (n == 1) return ray_record(rays, static_cast<std::size_t>(x));
+  const std::size_t first = at.row * n * wide + at.column * n;
+  if (n == 1) return ray_record(rays, first);
   Report out = Report::array();
   for (std::size_t row = 0; row < n; ++row)
     for (std::size_t column = 0; column < n; ++column) {
       Report ray = {{"sample", row * n + column}};
-      ray.update(ray_record(rays, row * wide + static_cast<std::size_t>(x) * n + column));
+      ray.update(ray_record(rays, first + row * wide + column));
       out.push_back(ray);
     }
   return out;
@@ -72,7 +79,15 @@ Report hit_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
         }
       },
       hits);
-  if (!m.lights.empty()) out["lights"] = light_record(m, hits, k);
+  if (!hits.light.empty()) out["lights"] = light_record(m, hits, k);
+  return out;
+}
+
+Report hit_records(const Manifest& m, const Hits& hits, PixelPlace at) {
+  const std::size_t pixel = at.row * static_cast<std::size_t>(m.width) + at.column;
+  Report out = Report::array();
+  for (std::uint64_t k = hits.offset[pixel]; k < hits.offset[pixel + 1]; ++k)
+    out.push_back(hit_record(m, hits, k));
   return out;
 }
 
@@ -81,11 +96,17 @@ Report hit_record(const Manifest& m, const Hits& hits, std::uint64_t k) {
 Report pixel_records(DatasetReader& reader, int x, int y) {
   const Manifest& m = reader.manifest();
   const Band line = reader.band(line_in_window(m, x, y), 1);
-  const auto pixel = static_cast<std::size_t>(x);
-  Report hits = Report::array();
-  for (std::uint64_t k = line.hits.offset[pixel]; k < line.hits.offset[pixel + 1]; ++k)
-    hits.push_back(hit_record(m, line.hits, k));
-  return {{"pixel", {x, y}}, {"rays", ray_records(m, line.rays, x)}, {"hits", hits}};
+  const PixelPlace at{0, static_cast<std::size_t>(x)};
+  return {
+      {"pixel", {x, y}}, {"rays", ray_records(m, line.rays, at)}, {"hits", hit_records(m, line.hits, at)}};
+}
+
+Report pixel_records(const Dataset& dataset, int x, int y) {
+  const Manifest& m = dataset.manifest;
+  const PixelPlace at{static_cast<std::size_t>(line_in_window(m, x, y)), static_cast<std::size_t>(x)};
+  return {{"pixel", {x, y}},
+          {"rays", ray_records(m, dataset.rays, at)},
+          {"hits", hit_records(m, dataset.hits, at)}};
 }
 
 }  // namespace nullcone

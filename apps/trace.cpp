@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/preview.h"
 #include "apps/scene_text.h"
 #include "apps/stop_signals.h"
 #include "apps/tool.h"
@@ -77,18 +76,9 @@ int trace(const Options& options, const Scene& scene, const Tracer& tracer, cons
     before = resume_from(partial, writer);
     talk.resumed(partial, writer.lines());
   }
-  std::size_t hits = 0;
-  const Lines lines = {manifest.first_line + writer.lines(), manifest.first_line + manifest.lines};
-  Effort effort;
-  effort.core_seconds = trace_bands(
-      tracer, scene, lines, options.common.threads, talk.progress(),
-      [&](const Band& band) {
-        writer.add(band, make_preview(band.hits));
-        hits += band.hits.count();
-      },
-      &stop_wanted);
+  auto [effort, hits] =
+      trace_into(writer, tracer, scene, options.common.threads, talk.progress(), &stop_wanted);
   effort.seconds = talk.seconds();
-  effort.light_doubts = tracer.light_doubts();
   effort += before.effort;
   if (writer.lines() == manifest.lines) {
     writer.finish(effort);

@@ -62,6 +62,22 @@ std::string difference(const Manifest& a, const Manifest& b) {
   return {};
 }
 
+Traced trace_into(DatasetWriter& writer, const Tracer& tracer, const Scene& scene, int threads,
+                  const Progress& progress, const StopFlag* stop) {
+  Traced out;
+  const Manifest& manifest = writer.manifest();
+  const Lines lines = {manifest.first_line + writer.lines(), manifest.first_line + manifest.lines};
+  out.effort.core_seconds = trace_bands(
+      tracer, scene, lines, threads, progress,
+      [&](const Band& band) {
+        writer.add(band, make_preview(band.hits));
+        out.hits += band.hits.count();
+      },
+      stop);
+  out.effort.light_doubts = tracer.light_doubts();
+  return out;
+}
+
 Manifest resume_from(const std::string& path, DatasetWriter& writer) {
   for (const std::string& fault : verify_file(path)) throw InputError(path, "cannot go on from it: " + fault);
   DatasetReader reader(path);

@@ -29,6 +29,14 @@ std::string partial_path(const std::string& output);
 /// manifest.
 Manifest resume_from(const std::string& path, DatasetWriter& writer);
 
+struct Traced {
+  Effort effort;  ///< without the time from start to end, which began before
+  std::size_t hits = 0;
+};
+/// Traces the scan lines that the writer still lacks into it, or fewer after `stop`.
+Traced trace_into(DatasetWriter& writer, const Tracer& tracer, const Scene& scene, int threads,
+                  const Progress& progress, const StopFlag* stop = nullptr);
+
 /// Why two datasets are not of the same picture, as "A instead of B"; empty if they are.
 std::string difference(const Manifest& a, const Manifest& b);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include "postrender/canvas.h"
 
@@ -40,26 +40,18 @@ std::vector<std::string> wrapped(const std::string& text, int columns) {
   return out;
 }
 
-std::string category_name(const std::string& channel, std::uint32_t number, const Manifest& manifest) {
-  if (channel == "status" && number < kStatusNames.size()) return std::string(kStatusNames[number]);
-  if (channel == "id" && number >= 1 && number <= manifest.objects.size())
-    return manifest.objects[number - 1].name;
-  return std::to_string(number);
-}
-
 /// What has no place along the bar but occurs in the picture: all categories, and special values.
 std::vector<Entry> entries_of(const ColorScale& scale, const Manifest& manifest,
                               std::span<const float> values) {
-  std::set<std::uint32_t> numbers;
   bool missing = false, infinite = false, zero = false;
   for (const float x : values) {
-    if (scale.kind == ScaleKind::categories && std::isfinite(x))
-      numbers.insert(static_cast<std::uint32_t>(x));
     missing |= std::isnan(x);
     infinite |= std::isinf(x);
     zero |= scale.kind == ScaleKind::logarithmic && x <= 0;
   }
   std::vector<Entry> out;
+  const std::set<std::uint32_t> numbers =
+      scale.kind == ScaleKind::categories ? categories_in(values) : std::set<std::uint32_t>{};
   for (const std::uint32_t number : numbers) {
     if (static_cast<int>(out.size()) == kMostCategories) break;
     out.push_back({scale.color(static_cast<float>(number)), category_name(scale.channel, number, manifest)});
@@ -96,6 +88,23 @@ bool stands_on(const ColorScale& scale, float value) {
 }
 
 }  // namespace
+
+std::set<std::uint32_t> categories_in(std::span<const float> values) {
+  std::set<std::uint32_t> out;
+  float last = std::numeric_limits<float>::quiet_NaN();  // mostly that of the pixel before
+  for (const float x : values) {
+    if (std::isfinite(x) && x != last) out.insert(static_cast<std::uint32_t>(x));
+    last = x;
+  }
+  return out;
+}
+
+std::string category_name(const std::string& channel, std::uint32_t number, const Manifest& manifest) {
+  if (channel == "status" && number < kStatusNames.size()) return std::string(kStatusNames[number]);
+  if (channel == "id" && number >= 1 && number <= manifest.objects.size())
+    return manifest.objects[number - 1].name;
+  return std::to_string(number);
+}
 
 Image false_color_picture(const ColorScale& scale, const ChannelInfo& channel, const Manifest& manifest,
                           std::span<const float> values) {

@@ -10,6 +10,11 @@ namespace nullcone::postrender {
 std::string parse_file_name(JsonObject& in, std::string_view key, const LookSource& source) {
   const std::string file = in.text(key);
   if (file.empty() || file.find('\0') != std::string::npos) in.refuse(key, "expected the name of a file");
+  if (source.names != nullptr) {
+    const auto known = source.names->find(file);
+    if (known == source.names->end()) in.refuse(key, "expected a file of the first look, or one that was sent");
+    return known->second;
+  }
   const std::filesystem::path path = (std::filesystem::path(source.folder) / file).lexically_normal();
   // A look that is explained may be kept elsewhere.
   if (source.survey != nullptr) in.note(key, std::filesystem::absolute(path).string());

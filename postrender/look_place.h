@@ -1,6 +1,7 @@
 // Where a look stands, and how colours are written in it.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -25,6 +26,8 @@ struct LookSource {
   double frame = 0;              ///< of a sequence, for what shows the time
   JsonSurvey* survey = nullptr;  ///< where asked for: told of all defaults
   LookFiles* files = nullptr;    ///< where asked for: gets all files that the look names
+  /// For looks by strangers: the only names of files that may stand in it, and their paths.
+  const std::map<std::string, std::string>* names = nullptr;
 };
 
 /// The name under `key`, resolved against the folder of the look; not noted as that of a file.

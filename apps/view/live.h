@@ -1,0 +1,37 @@
+// A scene that is traced again and again, with other numbers in it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/record/dataset.h"
+#include "core/scene/read_scene.h"
+
+namespace nullcone::view {
+
+/// Immutable: any number of threads may trace it.
+class LiveScene {
+ public:
+  /// Why the scene of a dataset cannot be traced live, in one line; empty if it can.
+  static std::string hindrance(const Manifest& manifest);
+
+  /// Throws InputError where there is a hindrance.
+  explicit LiveScene(const Manifest& manifest);
+
+  /// Traces the scene with `changes` (scene_changes.h) in memory, its resolution divided by `scale` (1 to 8),
+  /// with one ray a pixel where that is not 1; without fingerprints. Throws InputError with the place of what
+  /// is wrong in the changes, for what no spacetime can hold, and for what takes too long.
+  Dataset trace(const nlohmann::json& changes, int scale) const;
+
+  /// A dataset file as nullcone-trace writes it; `look` replaces that in the scene, unless it is null. Throws
+  /// InputError and WorkError.
+  void save(const nlohmann::json& changes, const nlohmann::json& look, const std::string& path) const;
+
+ private:
+  Scene changed(const nlohmann::json& changes, const nlohmann::json& look, int scale) const;
+
+  nlohmann::json scene_;
+  MetricDescription metric_;
+};
+
+}  // namespace nullcone::view

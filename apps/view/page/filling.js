@@ -1,0 +1,54 @@
+// Keeps the look in full up to date, and puts the server's complaints beside the controls that they are about.
+
+import {ApiError} from "./api.js";
+
+/** Asks api/look after each change that is not part of a drag; the last answer counts. */
+export function fill(app) {
+  const {store} = app;
+  let last = 0;
+  const ask = async () => {
+    const number = ++last;
+    const {data, frame} = app.view;
+    try {
+      const answer = await app.api.json("api/look", {query: {data, frame}, body: store.look});
+      if (number !== last) return;
+      clear();
+      store.fill(answer);
+    } catch (error) {
+      if (number !== last) return;
+      if (!(error instanceof ApiError)) throw error;
+      complain(app, error.message);
+    }
+  };
+  store.addEventListener("change", ({detail}) => detail.live || ask());
+  store.addEventListener("history", () => ask());
+  app.addEventListener("view", ask);
+  app.frames.addEventListener("fault", ({detail}) => complain(app, detail.error.message));
+  app.frames.addEventListener("shown", () => app.faulty && last === 0 && clear());
+  ask();
+
+  function clear() {
+    if (!app.faulty) return;
+    app.faulty = false;
+    app.say("");
+    for (const control of document.querySelectorAll("[data-pointer]")) control.fault?.("");
+  }
+}
+
+/** On the status line, and where the control is that it is about. */
+function complain(app, message) {
+  app.faulty = true;
+  app.say(message, {error: true});
+  const place = /(?:^|[\s:'])((?:\/[\w~.-]+)+)/.exec(message)?.[1];
+  if (place !== undefined) nearest(place)?.fault(message);
+  app.store.dispatchEvent(new CustomEvent("fault", {detail: {message}}));
+}
+
+/** The control of `place`, or of what is around it, or of something in it. */
+function nearest(place) {
+  const controls = [...document.querySelectorAll("[data-pointer]")].filter((control) => control.fault);
+  const within = (inner, outer) => inner === outer || inner.startsWith(`${outer}/`);
+  const around = controls.filter(({dataset}) => within(place, dataset.pointer));
+  const longest = around.reduce((a, b) => (b.dataset.pointer.length > (a?.dataset.pointer.length ?? 0) ? b : a), null);
+  return longest ?? controls.find(({dataset}) => within(dataset.pointer, place));
+}
