@@ -6,8 +6,10 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <tuple>
 
+#include "apps/view/thin.h"
 #include "core/base/json.h"
 #include "postrender/look.h"
 #include "postrender/renderer.h"
@@ -85,6 +87,23 @@ void frames(benchmark::State& state, const std::string& text, const json& resolu
   state.counters["render_ms"] = mean(render);
   state.SetItemsProcessed(state.iterations());
 }
+
+/// A picture of 1280 x 1024, every pixel hit once, made coarser.
+void coarser(benchmark::State& state) {
+  Dataset dataset;
+  dataset.manifest.set_size(1280, 1024);
+  dataset.manifest.objects = {{"earth"}};
+  const std::size_t pixels = dataset.pixels();
+  dataset.hits.offset.resize(pixels + 1);
+  std::iota(dataset.hits.offset.begin(), dataset.hits.offset.end(), 0);
+  const auto fill = [&](const ChannelInfo&, auto& column) { column.assign(pixels, 1); };
+  for_each_channel(fill, dataset.hits);
+  for_each_channel(fill, dataset.rays);
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(view::thin(dataset, static_cast<int>(state.range(0))));
+}
+BENCHMARK(coarser)->Arg(1)->Arg(2)->Arg(4)->UseRealTime()->MeasureProcessCPUTime()->Unit(
+    benchmark::kMillisecond);
 
 }  // namespace
 

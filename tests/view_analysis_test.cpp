@@ -27,13 +27,13 @@ using postrender::make_dataset;
 using postrender::TestHit;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Smooth, with an edge in it.
+/// Smooth, but for an edge where it is wide.
 Bytes some_picture(int width, int height) {
   Bytes out;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      for (const int value : {40 + 150 * x / width, 60 + 120 * y / height, 2 * x > width ? 180 : 90})
-        out.push_back(static_cast<std::uint8_t>(value));
+      for (const int value : {40 + x / 3, 60 + y / 3, 90})
+        out.push_back(static_cast<std::uint8_t>(x < 150 ? value : value + 60));
   return out;
 }
 

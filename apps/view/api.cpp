@@ -278,12 +278,13 @@ Answer Api::channel(const Request& request, Query& query) {
   const Subject subject = this->subject(*viewer, query);
   const std::string name = query.text("name");
   const Format format = format_of(query);
+  const int scale = scale_of(query);
   const std::optional<double> from = query.number("from"), to = query.number("to");
   query.finish();
   if (from.has_value() != to.has_value()) throw InputError("?from", "expected both from and to, or neither");
   std::optional<std::pair<double, double>> range;
   if (from) range = {*from, *to};
-  const ChannelView view = view_channel(subject.loaded->records(), name, range);
+  const ChannelView view = view_channel(subject.loaded->records(scale), name, range);
   Answer out{200, std::string(content_type(format)), encode(format, view.width, view.height, view.rgb)};
   out.headers = {
       {"X-Nullcone-Size", size_text(view.width, view.height)},

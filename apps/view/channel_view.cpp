@@ -130,7 +130,9 @@ ChannelView view_channel(const Dataset& dataset, const std::string& name,
   const Manifest& manifest = dataset.manifest;
   const pr::ChannelChoice choice = choose(manifest, name);
   if (range) check_range(*range, choice.info);
-  const std::vector<float> values = pr::channel_values(choice, dataset);
+  const bool has_rays = dataset.rays.status.size() == manifest.rays();
+  const auto values =
+      choice.of_rays && !has_rays ? std::vector<float>{} : pr::channel_values(choice, dataset);
   if (values.size() != dataset.pixels())
     throw InputError("channel", "'" + choice.name + "' was not read of this dataset");
   pr::ColorScale scale = pr::choose_scale(choice.info, values, range);

@@ -102,10 +102,11 @@ void append_png(png_structp png, png_bytep data, std::size_t size) {
 
 /// libpng leaves by an exception, which its frames let through: they hold nothing that must be freed.
 [[noreturn]] void png_failed(png_structp, const char* why) { fail("PNG", why); }
+void png_warned(png_structp, const char*) {}
 
 std::string to_png(const Pixels& in) {
   struct Writer {
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, nullptr);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned);
     png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
     Writer() = default;
     Writer(const Writer&) = delete;

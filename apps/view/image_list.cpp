@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "apps/view/named_object.h"
@@ -34,10 +35,15 @@ struct Values {
   double least = std::numeric_limits<double>::infinity(), greatest = -least, sum = 0;
   std::size_t count = 0;
 
-  void add(double x) {
-    if (!std::isfinite(x)) return;
-    least = std::min(least, x), greatest = std::max(greatest, x);
-    sum += x, ++count;
+  void add(std::span<const float> column) {
+    Values here = *this;  // in registers
+    for (const float value : column) {
+      if (!std::isfinite(value)) continue;
+      const auto x = static_cast<double>(value);
+      here.least = std::min(here.least, x), here.greatest = std::max(here.greatest, x);
+      here.sum += x, ++here.count;
+    }
+    *this = here;
   }
   double mean() const { return sum / static_cast<double>(count); }
   ordered_json spread(double origin) const { return {least + origin, mean() + origin, greatest + origin}; }
@@ -50,12 +56,25 @@ struct Seen {
   double x = 0, y = 0;  ///< sums
   Values t, tau, shift, Z;
 
-  void add_pixel(std::size_t column, std::size_t row, std::size_t width) {
-    if (column < start) column += width;
-    if (pixels++ == 0) left = right = column, top = bottom = row;
-    left = std::min(left, column), right = std::max(right, column);
-    bottom = row;
-    x += static_cast<double>(column), y += static_cast<double>(row);
+  /// The pixels [first, end) of a row.
+  void add_pixels(std::size_t first, std::size_t end, std::size_t row, std::size_t width) {
+    if (first < start && start < end) {
+      add_pixels(start, end, row, width);
+      end = start;
+    }
+    if (first < start) first += width, end += width;
+    if (pixels == 0) left = first, right = end - 1, top = row;
+    left = std::min(left, first), right = std::max(right, end - 1), bottom = row;
+    const auto count = static_cast<double>(end - first);
+    x += 0.5 * count * static_cast<double>(first + end - 1), y += count * static_cast<double>(row);
+    pixels += end - first;
+  }
+  void add_crossings(const Hits& hits, std::size_t first, std::size_t end) {
+    const auto add = [&](Values& to, const std::vector<float>& column) {
+      if (!column.empty()) to.add(std::span(column).subspan(first, end - first));
+    };
+    add(t, hits.t), add(tau, hits.tau), add(shift, hits.shift);
+    if (hits.t.empty()) add(Z, hits.Z);
   }
   /// Small for what comes first: light of earlier times, or without times what is farther away.
   double place(bool timed) const {
@@ -96,37 +115,66 @@ void find_starts(const Regions& regions, const std::vector<std::uint32_t>& chose
     }
 }
 
-/// Adds the crossings with the object in one pixel.
-void add_crossings(const Hits& hits, std::uint32_t id, std::size_t pixel, const Regions& regions,
-                   const std::vector<std::uint32_t>& chosen, std::vector<Seen>& images) {
-  const auto add = [](Values& to, const std::vector<float>& column, std::size_t hit) {
-    if (!column.empty()) to.add(static_cast<double>(column[hit]));
-  };
-  for (std::size_t hit = hits.offset[pixel]; hit < hits.offset[pixel + 1]; ++hit) {
-    if (hits.id[hit] != id) continue;
-    const std::uint32_t image = chosen[regions.at(pixel, hits.order.empty() ? 0 : hits.order[hit])];
-    if (image == kLeftOut) continue;
-    add(images[image].t, hits.t, hit);
-    add(images[image].tau, hits.tau, hit);
-    add(images[image].shift, hits.shift, hit);
-    add(images[image].Z, hits.Z, hit);
+/// Neighbours that belong to one image are handed over together, which is faster: f(image, first, end).
+template <class F>
+class Runs {
+ public:
+  explicit Runs(F f) : f_(std::move(f)) {}
+  void add(std::uint32_t image, std::size_t place) {
+    if (image != image_ || place != end_) {
+      finish();
+      image_ = image, first_ = place;
+    }
+    end_ = place + 1;
   }
+  void finish() {
+    if (image_ != kLeftOut) f_(image_, first_, end_);
+    image_ = kLeftOut;
+  }
+
+ private:
+  F f_;
+  std::uint32_t image_ = kLeftOut;
+  std::size_t first_ = 0, end_ = 0;
+};
+
+void add_pixels(const Regions& regions, const std::vector<std::uint32_t>& chosen, std::size_t width,
+                std::vector<Seen>& images) {
+  for (std::size_t row = 0; row * width + 1 < regions.first.size(); ++row) {
+    Runs runs([&](std::uint32_t image, std::size_t first, std::size_t end) {
+      images[image].add_pixels(first, end, row, width);
+    });
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::uint32_t i = regions.first[row * width + x]; i < regions.first[row * width + x + 1]; ++i)
+        runs.add(chosen[regions.region[i]], x);
+    runs.finish();
+  }
+}
+
+void add_crossings(const Hits& hits, std::uint32_t id, const Regions& regions,
+                   const std::vector<std::uint32_t>& chosen, std::vector<Seen>& images) {
+  Runs runs([&](std::uint32_t image, std::size_t first, std::size_t end) {
+    images[image].add_crossings(hits, first, end);
+  });
+  for (std::size_t pixel = 0; pixel + 1 < regions.first.size(); ++pixel) {
+    if (regions.first[pixel] == regions.first[pixel + 1]) continue;
+    for (std::size_t hit = hits.offset[pixel]; hit < hits.offset[pixel + 1]; ++hit)
+      if (hits.id[hit] == id)
+        runs.add(chosen[regions.at(pixel, hits.order.empty() ? 0 : hits.order[hit])], hit);
+  }
+  runs.finish();
 }
 
 std::vector<Seen> gather(const Dataset& dataset, std::uint32_t id, const Regions& regions,
                          const std::vector<std::uint32_t>& chosen) {
   std::vector<Seen> out(std::min(kMostImages, regions.count()));
   const auto width = static_cast<std::size_t>(dataset.manifest.width);
+  for (std::size_t i = 0; i < regions.region.size(); ++i)
+    if (const std::uint32_t image = chosen[regions.region[i]]; image != kLeftOut)
+      out[image].order = regions.order[i];
   if (std::ranges::count(regions.over_edges, 1) > 0) find_starts(regions, chosen, width, out);
-  for (std::size_t pixel = 0; pixel < dataset.pixels(); ++pixel) {
-    for (std::uint32_t i = regions.first[pixel]; i < regions.first[pixel + 1]; ++i)
-      if (const std::uint32_t image = chosen[regions.region[i]]; image != kLeftOut) {
-        out[image].order = regions.order[i];
-        out[image].add_pixel(pixel % width, pixel / width, width);
-      }
-    if (regions.first[pixel] < regions.first[pixel + 1])
-      add_crossings(dataset.hits, id, pixel, regions, chosen, out);
-  }
+  add_pixels(regions, chosen, width, out);
+  add_crossings(dataset.hits, id, regions, chosen, out);
   return out;
 }
 

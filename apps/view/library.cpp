@@ -47,6 +47,11 @@ Loaded::Loaded(Dataset dataset, std::shared_ptr<postrender::TextureCache> textur
       renderer_(std::move(dataset), *postrender::kernels().front(), textures_),
       bytes_(size_of(records()) * (records_ ? 2 : 1)) {}
 
+const Dataset& Loaded::records(int scale) const {
+  if (scale > 1) return shared_renderer(scale).dataset();
+  return records_ ? *records_ : renderer_.dataset();
+}
+
 const postrender::Renderer& Loaded::shared_renderer(int scale) const {
   if (scale == 1) return renderer_;
   const std::scoped_lock lock(mutex_);

@@ -19,8 +19,8 @@ class Loaded {
   Loaded(Dataset dataset, std::shared_ptr<postrender::TextureCache> textures);
 
   const Manifest& manifest() const { return renderer_.manifest(); }
-  /// As it was read or traced: crossings by pixel, with the records of rays.
-  const Dataset& records() const { return records_ ? *records_ : renderer_.dataset(); }
+  /// As it was read or traced: crossings by pixel, with the records of rays; or of every `scale`-th pixel.
+  const Dataset& records(int scale = 1) const;
   std::size_t bytes() const { return bytes_; }
   /// A renderer of every `scale`-th pixel (1, 2 or 4), for one thread.
   postrender::Renderer renderer(int scale) const;

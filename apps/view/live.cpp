@@ -18,29 +18,24 @@ namespace {
 
 using nlohmann::json;
 
-/// Rays, and paths of lamps' light to what they meet, that one picture may ask for: viewers are many.
-constexpr double kMostPaths = 1 << 23, kMostPathsSaved = 1 << 26;
-/// Each band of scan lines is so little work that time is looked at often.
-constexpr int kMostSeconds = 10, kMostSecondsSaved = 120;
-
 class Clock {
  public:
-  explicit Clock(int most_seconds) : most_seconds_(most_seconds) {}
+  explicit Clock(double most_seconds) : most_seconds_(most_seconds) {}
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// Ends tracing that takes too long.
+  /// Ends tracing that takes too long. A band of scan lines is so little work that this is soon noticed.
   Progress limit() const {
     return [this](std::size_t done, std::size_t all) {
       if (done < all && seconds() > most_seconds_)
-        throw InputError("scene", "takes more than " + std::to_string(most_seconds_) +
+        throw InputError("scene", "takes more than " + std::to_string(std::lround(most_seconds_)) +
                                       " s to trace; expected fewer pixels or objects (or nullcone-trace)");
     };
   }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  int most_seconds_;
+  double most_seconds_;
 };
 
 void check_work(const Scene& scene, double most) {
@@ -72,7 +67,7 @@ std::string LiveScene::hindrance(const Manifest& manifest) {
   }
 }
 
-LiveScene::LiveScene(const Manifest& manifest) {
+LiveScene::LiveScene(const Manifest& manifest, const LiveLimits& limits) : limits_(limits) {
   if (const std::string reason = hindrance(manifest); !reason.empty()) throw InputError("scene", reason);
   scene_ = parse_json(manifest.scene, "scene");
   for (const MetricDescription& metric : metric_descriptions())
@@ -89,9 +84,9 @@ Scene LiveScene::changed(const json& changes, const json& look, int scale) const
 }
 
 Dataset LiveScene::trace(const json& changes, int scale) const {
-  const Clock clock(kMostSeconds);
+  const Clock clock(limits_.seconds);
   Scene scene = changed(changes, nullptr, scale);
-  check_work(scene, kMostPaths);
+  check_work(scene, limits_.paths);
   const int height = scene.camera.height;
   check_memory(scene, (height + kBandLines - 1) / kBandLines, available_memory(), "scene");
   const Spacetime& spacetime = find_spacetime(scene.metric);
@@ -108,10 +103,10 @@ Dataset LiveScene::trace(const json& changes, int scale) const {
 }
 
 void LiveScene::save(const json& changes, const json& look, const std::string& path) const {
-  const Clock clock(kMostSecondsSaved);
+  const Clock clock(limits_.saved_seconds);
   check_output_name(path);
   Scene scene = changed(changes, look, 1);
-  check_work(scene, kMostPathsSaved);
+  check_work(scene, limits_.saved_paths);
   check_memory(scene, bands_in_flight(0), available_memory(), "scene");
   const Spacetime& spacetime = find_spacetime(scene.metric);
   const auto tracer = prepare_scene(spacetime, scene, "scene");

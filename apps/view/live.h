@@ -9,6 +9,13 @@
 
 namespace nullcone::view {
 
+/// What one request may ask for, in memory and for a file: rays and paths of lamps' light to what they meet,
+/// and seconds.
+struct LiveLimits {
+  double paths = 1 << 23, seconds = 10;
+  double saved_paths = 1 << 26, saved_seconds = 120;
+};
+
 /// Immutable: any number of threads may trace it.
 class LiveScene {
  public:
@@ -16,11 +23,11 @@ class LiveScene {
   static std::string hindrance(const Manifest& manifest);
 
   /// Throws InputError where there is a hindrance.
-  explicit LiveScene(const Manifest& manifest);
+  explicit LiveScene(const Manifest& manifest, const LiveLimits& limits = {});
 
   /// Traces the scene with `changes` (scene_changes.h) in memory, its resolution divided by `scale` (1 to 8),
   /// with one ray a pixel where that is not 1; without fingerprints. Throws InputError with the place of what
-  /// is wrong in the changes, for what no spacetime can hold, and for what takes too long.
+  /// is wrong in the changes, for what no spacetime can hold, and for what goes beyond the limits.
   Dataset trace(const nlohmann::json& changes, int scale) const;
 
   /// A dataset file as nullcone-trace writes it; `look` replaces that in the scene, unless it is null. Throws
@@ -32,6 +39,7 @@ class LiveScene {
 
   nlohmann::json scene_;
   MetricDescription metric_;
+  LiveLimits limits_;
 };
 
 }  // namespace nullcone::view

@@ -44,6 +44,7 @@ Regions gather(const Dataset& dataset, std::uint32_t id) {
   const bool ordered = hits.channels.has("order");
   const auto order_of = [&](std::size_t hit) { return ordered ? hits.order[hit] : 0; };
   out.first.reserve(dataset.pixels() + 1);
+  out.order.reserve(hits.count());
   out.first.push_back(0);
   for (std::size_t pixel = 0; pixel < dataset.pixels(); ++pixel) {
     const auto begin = out.order.size();

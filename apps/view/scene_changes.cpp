@@ -13,42 +13,55 @@ namespace {
 
 using nlohmann::json;
 
+// Numbers are checked here, and go into the scene as they were written.
+
 bool at_rest(const json& velocity) {
   return std::ranges::all_of(velocity, [](const json& component) { return component.get<double>() == 0; });
 }
 
 void copy_event(JsonObject& from, json& to) {
-  if (from.has("event")) to["event"] = read_event(from, "event");
+  if (!from.has("event")) return;
+  read_event(from, "event");
+  to["event"] = from.at("event");
+}
+
+void copy_number(JsonObject& from, std::string_view key, json& to) {
+  from.number(key);
+  to[std::string(key)] = from.at(key);
 }
 
 void change_metric(JsonObject changes, const MetricDescription& metric, json& scene) {
   for (const MetricParameter& parameter : metric.parameters)
     if (parameter.words[0].empty() && changes.has(parameter.name))
-      scene[std::string(parameter.name)] = changes.number(parameter.name, parameter.least, parameter.most);
+      copy_number(changes, parameter.name, scene);
   changes.finish();
 }
 
 void change_observer(JsonObject changes, json& scene) {
   copy_event(changes, scene);
-  if (changes.has("velocity")) scene["velocity"] = read_velocity(changes, "velocity");
+  if (changes.has("velocity")) {
+    read_velocity(changes, "velocity");
+    scene["velocity"] = changes.at("velocity");
+  }
   changes.finish();
 }
 
 void change_camera(JsonObject changes, json& scene) {
   for (const char* key : {"azimuth_deg", "elevation_deg", "roll_deg"})
-    if (changes.has(key)) scene[key] = changes.number(key);
+    if (changes.has(key)) copy_number(changes, key, scene);
   if (changes.has("fov_deg")) {
     if (scene.value("fov_deg", json()).is_array())
-      scene["fov_deg"] = changes.numbers("fov_deg", 2);
+      changes.numbers("fov_deg", 2);
     else
-      scene["fov_deg"] = changes.number("fov_deg");
+      changes.number("fov_deg");
+    scene["fov_deg"] = changes.at("fov_deg");
   }
   if (changes.has("resolution")) {
     const auto size = changes.numbers("resolution", 2, kLeastSide, kMostSide);
     if (size[0] * size[1] > kMostPixels)
       changes.refuse("resolution", "asks for more than " + std::to_string(std::lround(kMostPixels)) +
                                        " pixels; expected fewer");
-    scene["resolution"] = size;
+    scene["resolution"] = changes.at("resolution");
   }
   changes.finish();
 }
@@ -67,14 +80,16 @@ void change_placing(JsonObject& changes, json& placing) {
     if (changes.has("velocity"))
       changes.refuse("velocity", "the object is fixed in the chart (placing 'coordinate'); expected none");
     if (!changes.has("event")) return;
-    const Event event = read_event(changes, "event");
+    read_event(changes, "event");
+    const json& event = changes.at("event");
     placing["centre"] = {event[1], event[2], event[3]};
     return;
   }
   json& worldline = placing.at("worldline");
   copy_event(changes, worldline);
   if (!changes.has("velocity")) return;
-  const json velocity = read_velocity(changes, "velocity");
+  read_velocity(changes, "velocity");
+  const json& velocity = changes.at("velocity");
   if (worldline.at("type") == "static" && at_rest(velocity)) return;
   keep_axes(placing);
   worldline["type"] = "geodesic";
@@ -85,7 +100,8 @@ void change_object(JsonObject changes, json& object) {
   json& shape = object.at("shape");
   if (changes.has("radius")) {
     if (shape.at("type") != "sphere") changes.refuse("radius", "the object is not a sphere; expected none");
-    shape["radius"] = read_radius(changes);
+    read_radius(changes);
+    shape["radius"] = changes.at("radius");
   }
   if (object.contains("placing")) {
     change_placing(changes, object["placing"]);
@@ -96,10 +112,26 @@ void change_object(JsonObject changes, json& object) {
   changes.finish();
 }
 
-void change_objects(JsonObject changes, json& objects) {
-  for (json& object : objects) {
+/// Lamps with this body that were where it was go where it goes.
+void take_lamps_along(const json& before, const json& after, json& scene) {
+  if (!before.contains("placing") || !before["placing"].contains("worldline")) return;
+  const json &from = before["placing"]["worldline"], &to = after.at("placing").at("worldline");
+  if (from == to || !scene.contains("lights")) return;
+  for (json& lamp : scene["lights"].at("lamps")) {
+    if (lamp.value("body", json()) != before.at("name") || lamp.at("worldline") != from) continue;
+    const bool has_axes = lamp.contains("shape") && lamp["shape"].value("type", "point") == "quad";
+    if (has_axes) keep_axes(lamp);
+    lamp["worldline"] = to;
+  }
+}
+
+void change_objects(JsonObject changes, json& scene) {
+  for (json& object : scene.at("objects")) {
     const auto name = object.at("name").get<std::string>();
-    if (changes.has(name)) change_object(changes.object(name), object);
+    if (!changes.has(name)) continue;
+    const json before = object;
+    change_object(changes.object(name), object);
+    take_lamps_along(before, object, scene);
   }
   changes.finish();
 }
@@ -112,7 +144,7 @@ void apply_changes(const json& changes, const MetricDescription& metric, json& s
   if (root.has("metric")) change_metric(root.object("metric"), metric, scene.at("metric"));
   if (root.has("observer")) change_observer(root.object("observer"), scene.at("observer"));
   if (root.has("camera")) change_camera(root.object("camera"), scene.at("camera"));
-  if (root.has("objects")) change_objects(root.object("objects"), scene.at("objects"));
+  if (root.has("objects")) change_objects(root.object("objects"), scene);
   root.finish();
 }
 

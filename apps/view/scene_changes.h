@@ -13,7 +13,8 @@ namespace nullcone::view {
 ///   observer   {event, velocity}
 ///   camera     {azimuth_deg, elevation_deg, roll_deg, fov_deg, resolution}
 ///   objects    {name: {event, velocity, radius}}; of what is fixed in the chart, the place in `event` counts
-/// Objects keep their axes when they begin or cease to move. Throws InputError for what is not an entry, or
+/// Objects keep their axes when they begin or cease to move, and take along the lamps whose bodies they are,
+/// where both have the same worldline. Throws InputError for what is not an entry, or
 /// of another kind; whether the numbers make a scene, read_scene() must say.
 void apply_changes(const nlohmann::json& changes, const MetricDescription& metric, nlohmann::json& scene);
 

@@ -3,7 +3,7 @@
 import {html, text} from "./plot.js";
 
 export function setup(app) {
-  if ((app.dataset.channels ?? []).length > 0) new FalseColours(app);
+  new FalseColours(app);
 }
 
 class FalseColours {
@@ -11,7 +11,7 @@ class FalseColours {
   #layer;
   #asked = 0;
   #on = html("input", {type: "checkbox"});
-  #channel;
+  #channel = html("select", {"aria-label": "channel"});
   #meaning = html("p", {class: "extras-note"});
   #from = html("input", {type: "number", step: "any", placeholder: "auto"});
   #to = html("input", {type: "number", step: "any", placeholder: "auto"});
@@ -22,8 +22,7 @@ class FalseColours {
     this.#app = app;
     this.#layer = app.picture.layer("channel");
     const {body} = app.panel("channels", "False colours", {open: false});
-    this.#channel = html("select", {"aria-label": "channel"}, ...app.dataset.channels.map(({name}) => html("option", {value: name}, name)));
-    if (app.dataset.channels.some(({name}) => name === "shift")) this.#channel.value = "shift";
+    this.#fill();
     const field = (label, input) => html("label", {class: "extras-field"}, html("span", {}, label), input);
     body.append(
       html("div", {class: "extras-row"}, html("label", {}, this.#on, " show"), this.#channel), this.#meaning,
@@ -37,12 +36,19 @@ class FalseColours {
     });
     for (const input of [this.#from, this.#to]) input.addEventListener("change", () => this.#load());
     this.#opacity.addEventListener("input", () => (this.#layer.style.opacity = this.#opacity.value));
+    app.addEventListener("dataset", () => this.#fill());
     for (const name of ["view", "traced"]) app.addEventListener(name, () => this.#load());
     this.#describe();
   }
 
+  #fill() {
+    const names = (this.#app.dataset.channels ?? []).map(({name}) => name), before = this.#channel.value || "shift";
+    this.#channel.replaceChildren(...names.map((name) => html("option", {value: name}, name)));
+    this.#channel.value = names.includes(before) ? before : names[0] ?? "";
+  }
+
   #describe() {
-    const {unit, meaning} = this.#app.dataset.channels.find(({name}) => name === this.#channel.value) ?? {};
+    const {unit, meaning} = this.#app.dataset.channels?.find(({name}) => name === this.#channel.value) ?? {};
     this.#meaning.textContent = meaning ? `${meaning}${unit && unit !== "1" ? `, in ${unit}` : ""}` : "";
   }
 
@@ -58,7 +64,7 @@ class FalseColours {
     const [from, to] = [this.#from.value, this.#to.value];
     const range = from !== "" && to !== "" ? {from, to} : {};
     try {
-      const query = {data: this.#app.view.data, scale: 1, format: "raw", name: this.#channel.value, ...range};
+      const query = {data: this.#app.view.data, format: "raw", name: this.#channel.value, ...range};
       const frame = await this.#app.api.frame(query, undefined, "api/channel");
       if (asked !== this.#asked) return;
       // What was traced coarsely takes the place of the picture.

@@ -5,39 +5,43 @@ import {ApiError} from "./api.js";
 /** Asks api/look after each change that is not part of a drag; the last answer counts. */
 export function fill(app) {
   const {store} = app;
-  let last = 0;
+  let last = 0, asked = false;
   const ask = async () => {
+    asked = false;
     const number = ++last;
     const {data, frame} = app.view;
     try {
       const answer = await app.api.json("api/look", {query: {data, frame}, body: store.look});
       if (number !== last) return;
-      clear();
+      clear(app);
       store.fill(answer);
     } catch (error) {
       if (number !== last) return;
       if (!(error instanceof ApiError)) throw error;
-      complain(app, error.message);
+      complain(app, error.message, "look");
     }
   };
-  store.addEventListener("change", ({detail}) => detail.live || ask());
-  store.addEventListener("history", () => ask());
-  app.addEventListener("view", ask);
-  app.frames.addEventListener("fault", ({detail}) => complain(app, detail.error.message));
-  app.frames.addEventListener("shown", () => app.faulty && last === 0 && clear());
-  ask();
+  const soon = () => {
+    if (!asked) queueMicrotask(ask);
+    asked = true;
+  };
+  store.addEventListener("history", soon);
+  app.addEventListener("view", soon);
+  app.frames.addEventListener("fault", ({detail}) => complain(app, detail.error.message, "frame"));
+  app.frames.addEventListener("shown", () => app.fault === "frame" && clear(app));
+  soon();
+}
 
-  function clear() {
-    if (!app.faulty) return;
-    app.faulty = false;
-    app.say("");
-    for (const control of document.querySelectorAll("[data-pointer]")) control.fault?.("");
-  }
+function clear(app) {
+  if (!app.fault) return;
+  app.fault = null;
+  app.say("");
+  for (const control of document.querySelectorAll("[data-pointer]")) control.fault?.("");
 }
 
 /** On the status line, and where the control is that it is about. */
-function complain(app, message) {
-  app.faulty = true;
+function complain(app, message, source) {
+  app.fault = source;
   app.say(message, {error: true});
   const place = /(?:^|[\s:'])((?:\/[\w~.-]+)+)/.exec(message)?.[1];
   if (place !== undefined) nearest(place)?.fault(message);

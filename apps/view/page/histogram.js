@@ -1,7 +1,7 @@
 // The panel "Time slices": when the selected object sent out the light that is seen, and what it looks like in slices
 // of that time, as bands that are dragged.
 
-import {html, linearTicks, scaleOf, svg, text} from "./plot.js";
+import {fillObjects, html, linearTicks, scaleOf, svg, text} from "./plot.js";
 import {ends, fresh, moved} from "./slices.js";
 import {sliceFields} from "./slice_fields.js";
 
@@ -11,14 +11,15 @@ const kSteps = {ArrowLeft: -0.01, ArrowDown: -0.01, ArrowRight: 0.01, ArrowUp: 0
 export function setup(app) {
   const panel = new Slices(app);
   app.store.addEventListener("change", () => panel.update());
-  app.store.addEventListener("select", () => panel.select(app.selected));
-  app.addEventListener?.("select", () => panel.select(app.selected));
-  app.addEventListener?.("view", () => panel.load());
-  panel.select(app.selected ?? app.dataset.objects[0]?.name);
+  app.addEventListener("select", () => panel.select(app.selected));
+  app.addEventListener("dataset", () => panel.refill());
+  for (const name of ["view", "traced"]) app.addEventListener(name, () => panel.stale());
 }
 
 class Slices {
   #app;
+  #panel;
+  #fresh = false;
   #object;
   #channel = "t";
   #histogram = null;
@@ -32,20 +33,21 @@ class Slices {
 
   constructor(app) {
     this.#app = app;
-    const {body} = app.panel("slices", "Time slices", {open: false});
-    this.#object = html("select", {"aria-label": "object", onchange: () => this.load()},
-      ...app.dataset.objects.map(({name}) => html("option", {value: name}, name)));
+    this.#panel = app.panel("slices", "Time slices", {open: false});
+    this.#object = html("select", {"aria-label": "object", onchange: () => this.stale()});
+    this.refill();
     const channel = html("select", {"aria-label": "clock", onchange: () => {
       this.#channel = channel.value;
-      this.load();
+      this.stale();
     }}, html("option", {value: "t"}, "t, coordinate time"), html("option", {value: "tau"}, "tau, its own clock"));
     const log = html("input", {type: "checkbox", onchange: () => {
       this.#logarithmic = log.checked;
       this.#draw();
     }});
     const add = html("button", {type: "button", onclick: () => this.#add()}, "Add slice");
-    body.append(html("div", {class: "extras-row"}, this.#object, channel, html("label", {}, log, " log")),
+    this.#panel.body.append(html("div", {class: "extras-row"}, this.#object, channel, html("label", {}, log, " log")),
       this.#drawing, this.#words, this.#list, add);
+    this.#panel.element.addEventListener("toggle", () => this.#load());
     this.#drawing.addEventListener("pointermove", (event) => this.#move(event));
     for (const name of ["pointerup", "pointercancel"]) this.#drawing.addEventListener(name, () => this.#drop());
   }
@@ -58,12 +60,23 @@ class Slices {
   }
 
   select(name) {
-    if (!name || name === this.#object.value && this.#histogram) return;
+    if (!name || name === this.#object.value) return;
     this.#object.value = name;
-    this.load();
+    this.stale();
+  }
+  refill() {
+    fillObjects(this.#object, this.#app);
   }
 
-  async load() {
+  /** Asked for when it can be seen. */
+  stale() {
+    this.#fresh = false;
+    this.#load();
+  }
+
+  async #load() {
+    if (this.#fresh || !this.#panel.element.open) return;
+    this.#fresh = true;
     const asked = ++this.#asked;
     const query = {data: this.#app.view.data, object: this.#object.value, channel: this.#channel, bins: kBins};
     try {
@@ -81,6 +94,7 @@ class Slices {
   }
 
   update() {
+    if (!this.#panel.element.open) return;
     this.#draw();
     this.#fields();
   }

@@ -1,12 +1,11 @@
 // The panel "Images": those of the selected object in the order in which their light set out.
 
-import {html, svg, text} from "./plot.js";
+import {fillObjects, firstLine, html, svg, text} from "./plot.js";
 
 export function setup(app) {
   const list = new ImageList(app);
-  const follow = () => list.select(app.selected);
-  app.store.addEventListener("select", follow);
-  app.addEventListener("select", follow);
+  app.addEventListener("select", () => list.select(app.selected));
+  app.addEventListener("dataset", () => list.refill());
   app.addEventListener("view", () => list.stale());
   app.addEventListener("traced", () => list.stale());
 }
@@ -25,12 +24,16 @@ class ImageList {
   constructor(app) {
     this.#app = app;
     this.#panel = app.panel("images", "Images of an object", {open: false});
-    this.#object = html("select", {"aria-label": "object"}, ...app.dataset.objects.map(({name}) => html("option", {value: name}, name)));
-    this.#object.value = app.selected ?? app.dataset.objects[0]?.name;
+    this.#object = html("select", {"aria-label": "object"});
+    this.refill();
     this.#object.addEventListener("change", () => this.stale());
     this.#panel.body.append(this.#object, this.#words, this.#list);
     app.picture.overlay.append(this.#outline);
     this.#panel.element.addEventListener("toggle", () => this.#load());
+  }
+
+  refill() {
+    fillObjects(this.#object, this.#app);
   }
 
   select(name) {
@@ -77,7 +80,7 @@ class ImageList {
     for (const other of this.#list.querySelectorAll("button")) other.setAttribute("aria-pressed", String(other === button && image !== null));
     this.#outline.setAttribute("visibility", image ? "visible" : "hidden");
     if (!image) return;
-    const first = this.#app.dataset.first_line ?? 0, [x0, y0, x1, y1] = image.box;
+    const first = firstLine(this.#app), [x0, y0, x1, y1] = image.box;
     const set = {x: x0 - 2, y: y0 - first - 2, width: x1 - x0 + 5, height: y1 - y0 + 5};
     for (const [name, value] of Object.entries(set)) this.#outline.setAttribute(name, value);
     const {picture} = this.#app;

@@ -1,6 +1,6 @@
 // The panel "Pixel": all records under the pointer as a table, and the spectra of what is seen there.
 
-import {html, newestWins, svg, text} from "./plot.js";
+import {firstLine, html, newestWins, svg, text} from "./plot.js";
 import {spectrumPlot} from "./spectrum_plot.js";
 
 const kPause = 60;   // ms between two requests while the pointer moves
@@ -43,7 +43,7 @@ class Inspection {
     app.picture.overlay.append(this.#marker);
     app.picture.addEventListener("pixel", ({detail}) => this.#over(detail));
     app.picture.addEventListener("pick", ({detail}) => this.#setPin(true, detail));
-    app.picture.element.addEventListener("keydown", (event) => this.#key(event));
+    app.keys?.add(["P"], "pin the pixel under the pointer, and let go of it", () => this.#setPin(!this.#pinned, this.#at));
     app.store.addEventListener("change", () => this.#again(kLookRests));
     app.addEventListener("view", () => this.#again(0));
     app.addEventListener("traced", () => this.#again(0));
@@ -63,12 +63,6 @@ class Inspection {
     if (!inside || this.#pinned) return;
     this.#at = {x, y};
     if (this.#open) this.#ask(x, y);
-  }
-
-  #key(event) {
-    if (event.key.toLowerCase() !== "p" || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    this.#setPin(!this.#pinned, this.#at);
   }
 
   /** Picking the pinned pixel again lets go of it. */
@@ -94,7 +88,7 @@ class Inspection {
   }
 
   async #fetch(x, y) {
-    const {data, frame} = this.#app.view, first = this.#app.dataset.first_line ?? 0;
+    const {data, frame} = this.#app.view, first = firstLine(this.#app);
     if (x >= this.#app.picture.width || y >= this.#app.picture.height) return;
     try {
       const body = this.#app.store.look;

@@ -9,7 +9,9 @@ const kFormats = {
   webp: {bytes: 0.15, encode: 60, decode: 12, lossless: false},
 };
 const kLocal = 4e5, kRemote = 5e3; // bytes/ms before anything was measured
-const kTelling = 2e4;              // bytes from which an answer tells the link's speed
+const kTelling = 5e4;              // bytes from which an answer tells the link's speed
+const kTellingPixels = 0.05;       // million pixels from which one tells what formats cost
+const kClock = 0.2;                // ms that clocks of browsers tell apart
 const kHold = 0.85;                // another format must be that much faster
 
 const mean = (before, now, share = 0.3) => (1 - share) * before + share * now;
@@ -19,12 +21,12 @@ export class Link {
   constructor(host) {
     const local = /^(localhost|127\..*|\[::1\])$/.test(host);
     this.rate = local ? kLocal : kRemote; // bytes/ms
-    this.latency = 0;                     // ms to and fro, without work
     this.serverTime = 0;                  // ms of work a frame
     this.pinned = null;                   // the user's own choice
     this.formats = structuredClone(kFormats);
-    this.last = {true: null, false: null};
+    this.last = {true: null, false: null}; // by lossless
     this.telling = false;                 // whether the rate was measured
+    this.#observe();
   }
 
   /** ms that a frame takes, but for what all formats have alike. */
@@ -43,31 +45,39 @@ export class Link {
     return (this.last[lossless] = change ? best : held);
   }
 
-  /** @param {{format: string, bytes: number, width: number, height: number, times: object, ms: number}} frame */
-  measured(frame) {
-    const {format, bytes, times} = frame;
+  /** What a frame took, in ms and bytes. @param {object} frame as Api.frame() gives it */
+  measured({format, bytes, width, height, times, decoded}) {
     const known = this.formats[format];
     if (known === undefined) return;
-    const pixels = frame.width * frame.height;
-    const encode = times.encode ?? 0;
+    const share = (width * height) / 1e6;
     const work = Object.values(times).reduce((sum, ms) => sum + ms, 0);
-    known.bytes = mean(known.bytes, bytes / pixels);
-    known.encode = mean(known.encode, (encode / pixels) * 1e6);
     this.serverTime = this.serverTime === 0 ? work : mean(this.serverTime, work);
-    const way = Math.max(frame.arrived - work, 0.2);
-    if (bytes < kTelling) {
-      this.latency = this.latency === 0 ? way : Math.min(this.latency, way);
-      return;
-    }
-    const rate = bytes / Math.max(way - this.latency, 0.2);
-    this.rate = this.telling ? mean(this.rate, rate) : rate;
+    known.bytes = mean(known.bytes, bytes / (share * 1e6));
+    if (share < kTellingPixels) return; // the rest is mostly what any frame takes
+    known.encode = mean(known.encode, (times.encode ?? 0) / share);
+    if (decoded !== undefined) known.decode = mean(known.decode, decoded / share);
+  }
+
+  /** Measures what arrives, by the browser's own clock of its network: the page may be busy. */
+  #observe() {
+    if (typeof PerformanceObserver === "undefined") return;
+    new PerformanceObserver((list) => {
+      for (const {name, encodedBodySize, responseStart, responseEnd} of list.getEntries())
+        if (/\/api\/(frame|trace|channel)\b/.test(name)) this.received(encodedBodySize, responseEnd - responseStart);
+    }).observe({type: "resource"});
+  }
+
+  /** @param {number} bytes @param {number} ms from the first byte to the last */
+  received(bytes, ms) {
+    if (bytes < kTelling || !(ms >= 0)) return;
+    const rate = bytes / Math.max(ms, kClock);
+    this.rate = this.telling ? Math.exp(mean(Math.log(this.rate), Math.log(rate))) : rate;
     this.telling = true;
-    if (frame.decoded !== undefined) known.decode = mean(known.decode, (frame.decoded / pixels) * 1e6);
   }
 
   /** Why the format is what it is. */
   get reason() {
-    const rate = `${speed(this.rate)} measured`;
+    const rate = this.telling ? `${speed(this.rate)} measured` : "a rate that is still to be measured";
     if (this.pinned !== null) return `${this.pinned} was chosen by hand; ${rate}`;
     const still = this.last[true] ?? "raw", moving = this.last[false];
     const both = moving === null || moving === still ? still : `${moving} while dragging, ${still} (lossless) after`;

@@ -34,7 +34,7 @@ const kModules = [
 
 /**
  * What the modules share. Events: "view" when another dataset or frame is shown, "dataset" when the description is of
- * another dataset, "object" when another object is selected.
+ * another dataset, "select" when another object is selected.
  */
 class App extends EventTarget {
   api = new Api();
@@ -42,7 +42,9 @@ class App extends EventTarget {
   dataset = null; // answer of api/dataset
   view = {data: 0, frame: 0};
   /** Name of the object that the panel shows. */
-  object = null;
+  selected = null;
+  /** Who refused the look: "look" or "frame"; null while it is right. */
+  fault = null;
   store;
   picture;
   frames;
@@ -71,7 +73,8 @@ class App extends EventTarget {
   }
 
   /** Shows another dataset, frame or both. Looks go along between datasets with the same objects and lamps. */
-  async show({data = this.view.data, frame = this.view.frame}) {
+  async show({data = this.view.data, frame}) {
+    frame ??= data === this.view.data ? this.view.frame : this.state.datasets[data]?.frame ?? 0;
     if (data === this.view.data && frame === this.view.frame) return;
     const other = typeof data === "number" && data !== this.view.data ? await this.describe(data) : this.dataset;
     const before = this.dataset;
@@ -80,7 +83,7 @@ class App extends EventTarget {
     if (other !== before) {
       this.picture.resize(other.width, other.height);
       this.store.rebase(other.look, alike(before, other) ? undefined : other.look);
-      if (!other.objects.some(({name}) => name === this.object)) this.object = other.objects[0]?.name ?? null;
+      if (!other.objects.some(({name}) => name === this.selected)) this.selected = other.objects[0]?.name ?? null;
       this.#tell("dataset");
     }
     this.#tell("view");
@@ -88,9 +91,9 @@ class App extends EventTarget {
 
   /** @param {string} name of an object */
   select(name) {
-    if (name === this.object || !this.dataset.objects.some((object) => object.name === name)) return;
-    this.object = name;
-    this.#tell("object");
+    if (name === this.selected || !this.dataset.objects.some((object) => object.name === name)) return;
+    this.selected = name;
+    this.#tell("select");
   }
 
   async begin() {
@@ -99,7 +102,7 @@ class App extends EventTarget {
     const data = given.data < this.state.datasets.length ? given.data : 0;
     this.dataset = await this.describe(data);
     this.view = {data, frame: given.frame ?? this.state.datasets[data]?.frame ?? 0};
-    this.object = this.dataset.objects[0]?.name ?? null;
+    this.selected = this.dataset.objects[0]?.name ?? null;
     this.store = new Store(this.dataset.look);
     if (given.patch) this.store.replace(merged(this.dataset.look, given.patch));
     this.picture = new Picture(document.getElementById("stage"));

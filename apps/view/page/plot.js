@@ -71,3 +71,13 @@ export function newestWins(call) {
     }
   };
 }
+
+/** Line of the whole picture at which the canvas begins; what is traced live is whole. */
+export const firstLine = (app) => (app.view.data === "live" ? 0 : app.dataset.first_line ?? 0);
+
+/** The names of the dataset's objects; chosen stays what was, or becomes what the page has selected. */
+export function fillObjects(select, app) {
+  const names = app.dataset.objects.map(({name}) => name), before = select.value;
+  select.replaceChildren(...names.map((name) => html("option", {value: name}, name)));
+  select.value = names.includes(before) ? before : app.selected ?? names[0] ?? "";
+}

@@ -39,7 +39,7 @@ class Timeline {
       this.#play, step("frame before", -1, "◀|"), step("next frame", 1, "|▶"), this.#slider, this.#number,
       html("span", {class: "timeline-of"}, `of ${first} to ${last}`), html("label", {}, this.#loop, " loop"),
       html("label", {}, this.#rate, " frames/s"), this.#reached);
-    app.picture.element.after(element);
+    (document.getElementById("timeline") ?? app.picture.element.parentElement).append(element);
     this.#listen(element);
     this.#update();
   }
@@ -67,7 +67,7 @@ class Timeline {
   #go(frame) {
     if (!Number.isFinite(frame)) return;
     const to = Math.min(this.#last, Math.max(this.#first, Math.round(frame)));
-    if (to !== this.#now) this.#app.setView(this.#keyframes ? {frame: to} : {data: to});
+    if (to !== this.#now) this.#app.show(this.#keyframes ? {frame: to} : {data: to});
     this.#update();
   }
 
