@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -115,9 +116,13 @@ std::vector<std::uint8_t> colored(const pr::ColorScale& scale, std::span<const f
   const pr::Srgb8Table& encode = pr::Srgb8Table::instance();
   std::vector<std::uint8_t> out(3 * values.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, values.size(), 4096), [&](const auto& part) {
+    std::array<std::uint8_t, 3> code{};
     for (std::size_t i = part.begin(); i < part.end(); ++i) {
-      const pr::Rgb color = scale.color(values[i]);
-      out[3 * i] = encode(color.r), out[3 * i + 1] = encode(color.g), out[3 * i + 2] = encode(color.b);
+      if (i == part.begin() || values[i] != values[i - 1]) {
+        const pr::Rgb color = scale.color(values[i]);
+        code = {encode(color.r), encode(color.g), encode(color.b)};
+      }
+      std::ranges::copy(code, &out[3 * i]);
     }
   });
   return out;

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "core/base/error.h"
@@ -62,15 +63,21 @@ void for_each_kept(const Hits& hits, const Choice& choice, std::size_t pixel, F&
     if (choice.one_sample() || hits.sample[hit] == choice.sample()) f(hit);
 }
 
-/// to[i] = from[places[i]], on all threads.
-template <class T>
-void gather(const std::vector<T>& from, const std::vector<std::size_t>& places, std::vector<T>& to) {
-  if (from.empty()) return;
-  to.resize(places.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), std::size_t{1} << 14),
-                    [&](const auto& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) to[i] = from[places[i]];
-                    });
+/// Of all columns of a table, to[i] = from[places[i]]: one column a task, for it is the first touch of new
+/// memory that takes the time.
+template <class Table>
+void gather(const Table& from, const std::vector<std::size_t>& places, Table& to) {
+  std::vector<std::function<void()>> tasks;
+  for_each_channel(
+      [&](const ChannelInfo&, auto& copy, const auto& column) {
+        if (column.empty()) return;  // not read
+        tasks.emplace_back([&] {
+          copy.resize(places.size());
+          for (std::size_t i = 0; i < places.size(); ++i) copy[i] = column[places[i]];
+        });
+      },
+      to, from);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) { tasks[i](); });
 }
 
 Hits thin_hits(const Hits& hits, const Choice& choice) {
@@ -88,21 +95,18 @@ Hits thin_hits(const Hits& hits, const Choice& choice) {
     for_each_kept(hits, choice, choice.pixel(row, column), [&](std::size_t hit) { places[next++] = hit; });
   });
   // Step 3: column by column.
-  for_each_channel([&](const ChannelInfo&, auto& to, const auto& from) { gather(from, places, to); }, out,
-                   hits);
+  gather(hits, places, out);
   std::ranges::fill(out.sample, 0);
   return out;
 }
 
 Rays thin_rays(const Rays& rays, const Choice& choice) {
   Rays out;
-  if (rays.status.empty()) return out;  // not read
   std::vector<std::size_t> places(choice.rows() * choice.columns());
   for_each_pixel(choice, [&](std::size_t row, std::size_t column, std::size_t pixel) {
     places[pixel] = choice.ray(row, column);
   });
-  for_each_channel([&](const ChannelInfo&, auto& to, const auto& from) { gather(from, places, to); }, out,
-                   rays);
+  gather(rays, places, out);
   return out;
 }
 

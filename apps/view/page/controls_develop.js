@@ -13,9 +13,9 @@ export function setup(app) {
 
 let white = null, note = null; // of the last frame
 
-/** What `auto` came to. */
+/** What `auto` came to; 1 where nothing has a physical unit. */
 function showWhite(next) {
-  white = next ?? white;
+  white = next === 1 ? null : next;
   if (note) note.textContent = white === null ? "" : `White of this picture: ${white.toPrecision(4)} cd/m²`;
 }
 
@@ -41,7 +41,7 @@ function exposure({store}) {
   };
   const build = () => {
     note = make("p", {class: "hint"});
-    showWhite(null);
+    showWhite(white);
     return note;
   };
   return [

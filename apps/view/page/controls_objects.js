@@ -44,7 +44,7 @@ function objectFields(app, name) {
     ...textureFields(app, pointer),
     {kind: "group", label: "Light"},
     lit && surface,
-    ...spectrumFields(app, `${pointer}/spectrum`),
+    ...spectrumFields(app, `${pointer}/spectrum`, {materials: app.store.get(`${pointer}/texture/type`) === "materials"}),
     {...kIntensity, pointer: `${pointer}/intensity`},
     {...kOpacity, pointer: `${pointer}/opacity`},
     app.store.get(`${pointer}/blink`) && {kind: "json", pointer: `${pointer}/blink`, label: "Blink"},

@@ -74,8 +74,11 @@ export class Form {
     let group = make("div");
     this.#body.replaceChildren(group);
     for (const {field, elements} of this.#shown) {
-      if (field.kind === "group") this.#body.append((group = elements[0]));
-      else group.append(...elements);
+      if (field.kind === "group") {
+        [group] = elements;
+        group.replaceChildren(group.firstChild); // its legend
+        this.#body.append(group);
+      } else group.append(...elements);
     }
     if (key === null || this.#body.contains(document.activeElement)) return;
     const again = this.#body.querySelector(`[data-key="${CSS.escape(key)}"]`);

@@ -4,6 +4,7 @@ import {make} from "./widgets.js";
 import {speed} from "./link.js";
 
 const $ = (id) => document.getElementById(id);
+const kFew = 16;
 const kThemes = ["system", "light", "dark"];
 
 export function setup(app) {
@@ -25,7 +26,8 @@ export function setup(app) {
 }
 
 function chooseDataset(app) {
-  if (app.state.datasets.length < 2) return;
+  const {length} = app.state.datasets;
+  if (length < 2 || length > kFew) return; // more are frames, which the time line shows
   const options = app.state.datasets.map(({name}, at) => make("option", {value: String(at)}, name));
   const select = make("select", {"aria-label": "Dataset", change: () => app.show({data: Number(select.value)})}, ...options);
   select.value = String(app.view.data);
@@ -91,7 +93,7 @@ function theme() {
     const name = kThemes[at];
     if (at === 0) delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = name;
-    button.textContent = `Theme: ${name}`;
+    button.replaceChildren(make("span", {class: "wide-only"}, "Theme: "), name);
   };
   try {
     at = Math.max(kThemes.indexOf(localStorage.getItem("nullcone-theme")), 0);

@@ -32,6 +32,8 @@ const kModules = [
   timeline, share, raw,
 ];
 
+const kRemembered = 12000; // ms
+
 /**
  * What the modules share. Events: "view" when another dataset or frame is shown, "dataset" when the description is of
  * another dataset, "select" when another object is selected.
@@ -50,6 +52,7 @@ class App extends EventTarget {
   frames;
   #datasets = new Map(); // by number
   #status = document.getElementById("status");
+  #forget = 0;
   #panels = document.getElementById("panels");
 
   /** A collapsible section of the side bar. @returns {{element: HTMLDetailsElement, body: HTMLElement}} */
@@ -62,6 +65,8 @@ class App extends EventTarget {
 
   /** One line of what happened. */
   say(text, {error = false} = {}) {
+    clearTimeout(this.#forget);
+    if (!error) this.#forget = setTimeout(() => (this.#status.textContent = ""), kRemembered);
     this.#status.textContent = text;
     this.#status.classList.toggle("error", error);
   }

@@ -111,14 +111,21 @@ export class Picture extends EventTarget {
     this.#fitted = true;
   }
 
-  /** By a factor about a point of the box, in its pixels; by default its middle. */
-  zoomBy(factor, x = this.element.clientWidth / 2, y = this.element.clientHeight / 2) {
+  /** By a factor about a point of the box, in its pixels; by default the keyboard's cursor, or else the middle. */
+  zoomBy(factor, x, y) {
+    if (x === undefined) ({x, y} = this.#centre());
     const {clientWidth, clientHeight} = this.element;
     const whole = Math.min(clientWidth / this.width, clientHeight / this.height, 1);
     const before = this.#place;
     const zoom = Math.min(Math.max(before.zoom * factor, whole / 2), kClosest);
     const share = zoom / before.zoom;
     this.#move({zoom, x: x - share * (x - before.x), y: y - share * (y - before.y)});
+  }
+
+  #centre() {
+    const {cursor, inside, x, y} = this.pixel;
+    if (cursor && inside) return {x: this.#place.x + (x + 0.5) * this.zoom, y: this.#place.y + (y + 0.5) * this.zoom};
+    return {x: this.element.clientWidth / 2, y: this.element.clientHeight / 2};
   }
 
   panBy(dx, dy) {

@@ -57,13 +57,15 @@ const luminance = {kind: "number", label: "Luminance", unit: "cd/m²", optional:
 export const newSpectrum = (type) => ({type, ...structuredClone(kBegin[type] ?? {})});
 
 /**
- * @param {object} app @param {string} pointer of the spectrum @param {{types?: string[]}} [options]
+ * @param {object} app @param {string} pointer of the spectrum @param {{types?: string[], materials?: boolean}} [options]
  * @returns {import("./form.js").Field[]}
  */
-export function spectrumFields(app, pointer, {types = kTypes} = {}) {
+export function spectrumFields(app, pointer, {types = kTypes, materials = false} = {}) {
   const {store} = app;
   const type = store.get(`${pointer}/type`) ?? "display";
-  const words = store.words[`${pointer}/type`] ?? types;
+  // Tables cannot be sent to the server, and materials go with a texture of theirs.
+  const possible = (word) => word === type || (word !== "tabulated" && (word !== "materials" || materials));
+  const words = (store.words[`${pointer}/type`] ?? types).filter(possible);
   const choose = {
     kind: "select", pointer: `${pointer}/type`, label: "Spectrum", options: words, value: type,
     put: (next) => store.set(pointer, newSpectrum(next)), reset: () => store.reset(pointer),

@@ -96,7 +96,7 @@ export class Store extends EventTarget {
       this.#put(look, {pointer: "", live: false});
     }
     this.#tell("base");
-    this.#tell("history");
+    if (look !== undefined) this.#tell("history");
   }
 
   /** @param {{full: object, words: object, keys: object}} answer of api/look */

@@ -1,5 +1,7 @@
 // Controls of an object's texture.
 
+import {find} from "./look_patch.js";
+import {putTexture} from "./textures.js";
 import {make} from "./widgets.js";
 
 const kTypes = ["color", "checkerboard", "image", "materials"];
@@ -30,10 +32,10 @@ export function textureFields(app, pointer) {
 /** Without a file there is no image yet: the file's dialog is opened instead. */
 function choose(app, pointer, texture, type) {
   const {store} = app;
-  if (type === "none") return store.set(texture, undefined);
-  if (type in kBegin) return store.set(texture, {type, ...structuredClone(kBegin[type])});
-  const file = store.get(`${texture}/file`);
-  if (file !== undefined) return store.set(texture, {type, file});
+  if (type === "none") return putTexture(app, pointer, undefined);
+  if (type in kBegin) return putTexture(app, pointer, {type, ...structuredClone(kBegin[type])});
+  const file = store.get(`${texture}/file`) ?? find(store.base, `${texture}/file`);
+  if (file !== undefined) return putTexture(app, pointer, {type, file});
   app.textures.pick(pointer, type);
   store.dispatchEvent(new CustomEvent("full", {detail: {}})); // the select goes back until there is one
 }

@@ -2,6 +2,7 @@
 
 import {make} from "./widgets.js";
 import {pointerTo} from "./look_patch.js";
+import {newSpectrum} from "./spectrum_fields.js";
 
 /** `app.textures.pick(pointer, type)` asks for a file; `use(pointer, file, type)` uploads it and puts it there. */
 export function setup(app) {
@@ -53,6 +54,14 @@ function pick(app, pointer, type) {
   input.click();
 }
 
+/** Materials go with a spectrum of theirs, and without it. */
+export function putTexture({store}, pointer, texture) {
+  const before = store.get(`${pointer}/spectrum/type`) === "materials", after = texture?.type === "materials";
+  store.set(`${pointer}/texture`, texture, {live: true});
+  if (before !== after) store.set(`${pointer}/spectrum`, after ? newSpectrum("materials") : undefined, {live: true});
+  store.commit();
+}
+
 async function use(app, pointer, file, type = "image") {
   const most = app.state.limits?.upload_bytes ?? Infinity;
   if (file.size > most) return app.say(`${file.name} has ${file.size} bytes; at most ${most} are taken.`, {error: true});
@@ -63,7 +72,7 @@ async function use(app, pointer, file, type = "image") {
     const {offset, scale, rotate_deg, filter} = before;
     const kept = before.type === type ? {offset, scale, rotate_deg, filter} : {};
     const texture = Object.fromEntries(Object.entries({type, file: got.file, ...kept}).filter(([, value]) => value !== undefined));
-    app.store.set(`${pointer}/texture`, texture);
+    putTexture(app, pointer, texture);
     app.say(`${got.file}: ${got.width} × ${got.height} pixels, now on ${pointer.split("/").at(-1)}.`);
   } catch (error) {
     app.say(`${file.name}: ${error.message}`, {error: true});
