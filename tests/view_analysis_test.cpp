@@ -167,6 +167,8 @@ TEST(ViewImages, AreConnectedRegionsTheEarliestFirst) {
   EXPECT_EQ(found["images"][3]["pixels"], 3);
   EXPECT_EQ(found["images"][3]["box"].dump(), "[0,0,1,2]");
   EXPECT_EQ(images_of(data, "moon")["images"].size(), 1u);
+  // -7/3 on the average comes before -2, though most of it is later.
+  EXPECT_EQ(images_of(drawn({"b eaa"}), "earth")["images"][0]["pixels"], 3);
   EXPECT_NE(complaint([&] { images_of(data, "mars"); }).find("earth, moon"), std::string::npos);
 }
 

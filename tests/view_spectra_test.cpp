@@ -197,11 +197,17 @@ TEST_F(ViewPixel, HasTheRecordsOfTheFile) {
   fingerprint(data);
   test::write(path, data);
   DatasetReader reader(path);
-  const postrender::Look look = postrender::look_of("{}", data.manifest);
+  const std::string hot(kHot);
+  const postrender::Look look =
+      postrender::look_of(R"({"objects":{"earth":)" + hot + R"(,"moon":)" + hot + "}}", data.manifest);
   for (int y = 3; y < 7; ++y)
     for (int x = 0; x < 6; ++x) {
       ordered_json found = inspect_pixel(data, look, x, y);
-      EXPECT_TRUE(found["spectra"].is_array());
+      ASSERT_EQ(found["spectra"].size(), found["hits"].size());
+      for (std::size_t i = 0; i < found["hits"].size(); ++i) {
+        EXPECT_EQ(found["spectra"][i]["object"], found["hits"][i]["object"]);
+        EXPECT_EQ(found["spectra"][i]["g"].dump(), found["hits"][i]["shift"].dump());
+      }
       found.erase("spectra");
       EXPECT_EQ(found.dump(), pixel_records(reader, x, y).dump()) << x << " " << y;
     }

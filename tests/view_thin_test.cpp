@@ -112,17 +112,17 @@ TEST(Thin, KeepsLightAndOneSample) {
 }
 
 TEST(Thin, KeepsAllColumnsOfAPixel) {
-  const Dataset lit = lit_dataset(2), coarse = thin(lit, 3);
+  const Dataset lit = lit_dataset(3), coarse = thin(lit, 3);
   EXPECT_EQ(coarse.manifest.samples, 1);
   EXPECT_TRUE(std::ranges::all_of(coarse.hits.sample, [](std::uint32_t sample) { return sample == 0; }));
   std::size_t there = 0;
   for (std::size_t pixel = 0; pixel < coarse.pixels(); ++pixel) {
     const std::size_t x = 1 + 3 * (pixel % 12), y = 1 + 3 * (pixel / 12);
-    EXPECT_EQ(coarse.rays.status[pixel], lit.rays.status[2 * y * 74 + 2 * x]);
-    EXPECT_EQ(coarse.rays.steps[pixel], lit.rays.steps[2 * y * 74 + 2 * x]);
+    EXPECT_EQ(coarse.rays.status[pixel], lit.rays.status[(3 * y + 1) * 111 + 3 * x + 1]);
+    EXPECT_EQ(coarse.rays.steps[pixel], lit.rays.steps[(3 * y + 1) * 111 + 3 * x + 1]);
     std::size_t next = coarse.hits.offset[pixel];
     for (std::size_t hit = lit.hits.offset[y * 37 + x]; hit < lit.hits.offset[y * 37 + x + 1]; ++hit) {
-      if (lit.hits.sample[hit] != 0) continue;
+      if (lit.hits.sample[hit] != 4) continue;
       for_each_channel(
           [&](const ChannelInfo& channel, const auto& column, const auto& from) {
             if (channel.name == "sample") return;

@@ -140,8 +140,7 @@ ChannelView view_channel(const Dataset& dataset, const std::string& name,
       choice.of_rays && !has_rays ? std::vector<float>{} : pr::channel_values(choice, dataset);
   if (values.size() != dataset.pixels())
     throw InputError("channel", "'" + choice.name + "' was not read of this dataset");
-  pr::ColorScale scale = pr::choose_scale(choice.info, values, range);
-  scale.channel = choice.name;
+  const pr::ColorScale scale = pr::choose_scale(choice.info, values, range);
   return {manifest.width, manifest.lines, colored(scale, values), legend_of(choice, scale, manifest, values)};
 }
 

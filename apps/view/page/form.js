@@ -33,6 +33,9 @@ export class Form {
   #app;
   #body;
   #describe;
+  #panel;      // around it
+  #stale = false;
+  #planned = 0;
   #shown = []; // {field, elements}
 
   /** @param {object} app @param {HTMLElement} body @param {function(): Field[]} describe the fields for the look as it is */
@@ -40,14 +43,25 @@ export class Form {
     this.#app = app;
     this.#body = body;
     this.#describe = describe;
-    app.store.addEventListener("change", () => this.update());
+    this.#panel = body.closest("details");
+    this.#panel?.addEventListener("toggle", () => this.#stale && this.update());
+    app.store.addEventListener("change", ({detail}) => (detail.live ? this.#soon() : this.update()));
     app.store.addEventListener("full", () => this.update());
     app.store.addEventListener("base", () => this.update());
     this.update();
   }
 
+  /** While something is dragged frames come first. */
+  #soon() {
+    this.#planned ||= requestAnimationFrame(() => this.update());
+  }
+
   update() {
+    cancelAnimationFrame(this.#planned);
+    this.#planned = 0;
     if (Object.keys(this.#app.store.full).length === 0) return;
+    this.#stale = this.#panel !== null && !this.#panel.open;
+    if (this.#stale) return;
     const fields = this.#describe().filter(Boolean).map((field) => this.#asStored(field));
     const alike = fields.length === this.#shown.length && fields.every((field, at) => unchanged(field, this.#shown[at].field));
     if (!alike) this.#rebuild(fields);
