@@ -32,6 +32,12 @@ void for_each_row(int rows, MakeWorker&& make_worker) {
   });
 }
 
+/// A scan line of what may be left out.
+template <class Pixels>
+auto* line_of(Pixels& pixels, std::size_t row, std::size_t width) {
+  return pixels.empty() ? nullptr : pixels.data() + row * width;
+}
+
 /// Everything that the pixel loop takes for granted.
 const Dataset& check_records(const Dataset& dataset) {
   const Hits& hits = dataset.hits;
@@ -91,15 +97,18 @@ Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
 
 void Renderer::keep_radiance(const Shading& shading) {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
-  radiance_.display.resize(dataset_.pixels());
-  radiance_.physical.resize(has_physical(shading) ? dataset_.pixels() : 0);
+  const bool physical = has_physical(shading), display = !physical || has_display(shading);
+  radiance_.display.resize(display ? dataset_.pixels() : 0);
+  radiance_.physical.resize(physical ? dataset_.pixels() : 0);
+  begin_keeping();
   for_each_row(dataset_.manifest.lines, [&] {
     return
         [this, width, shader = LineShader(dataset_, one_each_, shading, kernel_)](std::size_t row) mutable {
-          shader.shade(row, radiance_.display.data() + row * width,
-                       radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width);
+          shader.shade(row, line_of(radiance_.display, row, width), line_of(radiance_.physical, row, width),
+                       kept_colors(row));
         };
   });
+  end_keeping();
 }
 
 /// The radiance of pixels from that of their samples: first along the lines, then down the columns.
@@ -135,8 +144,7 @@ void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
   const std::size_t width = static_cast<std::size_t>(manifest_.width);
   for_each_row(manifest_.lines, [&] {
     return [this, width, &image, developer = LineDeveloper(look, kernel_)](std::size_t row) mutable {
-      developer.develop(radiance_.display.data() + row * width,
-                        radiance_.physical.empty() ? nullptr : radiance_.physical.data() + row * width,
+      developer.develop(line_of(radiance_.display, row, width), line_of(radiance_.physical, row, width),
                         row * width, width, image);
     };
   });
@@ -146,8 +154,7 @@ void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
   const std::size_t physical_width = has_physical(shading) ? width : 0,
                     display_width = physical_width == 0 || has_display(shading) ? width : 0;
-  const bool known = keeping_ == Keeping::known;
-  if (keeping_ == Keeping::wanted) colors_.resize(dataset_.pixels());
+  begin_keeping();
   for_each_row(manifest_.lines, [&] {
     return [=, this, &image, shader = LineShader(dataset_, one_each_, shading, kernel_),
             developer = LineDeveloper(look, kernel_),
@@ -155,13 +162,24 @@ void Renderer::shade_and_develop(const Shading& shading, const DevelopLook& look
                std::size_t row) mutable {
       Rgbx *physical = line.physical.empty() ? nullptr : line.physical.data(),
            *display = line.display.empty() ? nullptr : line.display.data();
-      KeptColors kept;
-      if (keeping_ != Keeping::no && one_each_[row] != 0) kept = {colors_.data() + row * width, known};
-      shader.shade(row, display, physical, kept);
+      shader.shade(row, display, physical, kept_colors(row));
       developer.develop(display, physical, row * width, width, image);
     };
   });
+  end_keeping();
+}
+
+void Renderer::begin_keeping() {
+  if (keeping_ == Keeping::wanted) colors_.resize(dataset_.pixels());
+}
+void Renderer::end_keeping() {
   if (keeping_ == Keeping::wanted) keeping_ = Keeping::known;
+}
+/// Where the colours of a line stand, or shall stand.
+KeptColors Renderer::kept_colors(std::size_t row) {
+  if (keeping_ == Keeping::no || one_each_[row] == 0) return {};
+  const auto width = static_cast<std::size_t>(dataset_.manifest.width);
+  return {colors_.data() + row * width, keeping_ == Keeping::known};
 }
 
 /// Colours of textures are worth their memory from the second picture of the same textures on.

@@ -87,6 +87,9 @@ class Renderer {
   void develop_kept(const DevelopLook& look, Image& image) const;
   void shade_and_develop(const Shading& shading, const DevelopLook& look, Image& image);
   void decide_keeping(const Shading& shading);
+  void begin_keeping();
+  void end_keeping();
+  KeptColors kept_colors(std::size_t row);
 
   std::shared_ptr<const Source> source_;
   const Manifest& manifest_;

@@ -16,7 +16,7 @@ ALLOWED = {
     "metrics": {"core/base", "core/scene", "core/record", "core/trace"},
     "postrender": {"core/base", "core/record"},
     "apps": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender"},
-    "bench": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender"},
+    "bench": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender", "apps"},
     "tests": {"core/base", "core/scene", "core/record", "core/trace", "metrics", "postrender", "apps"},
 }
 PACK = "core/base/pack.h"

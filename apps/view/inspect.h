@@ -9,7 +9,8 @@
 namespace nullcone::view {
 
 /// The records of the pixel x, y of the picture as nullcone-info --pixel has them, and the spectra emitted
-/// and observed of all crossings that have some in this look. Throws InputError outside the window.
+/// and observed of all crossings that have some in this look, as spectra.h tells. Throws InputError outside
+/// the window.
 nlohmann::ordered_json inspect_pixel(const Dataset& dataset, const postrender::Look& look, int x, int y);
 
 }  // namespace nullcone::view

@@ -43,8 +43,8 @@ function clear(app) {
 function complain(app, message, source) {
   app.fault = source;
   app.say(message, {error: true});
-  const place = /(?:^|[\s:'])((?:\/[\w~.-]+)+)/.exec(message)?.[1];
-  if (place !== undefined) nearest(place)?.fault(message);
+  const places = [...message.matchAll(/(?:^|[\s:'])((?:\/[\w~.-]+)+)/g)].map(([, place]) => place);
+  places.map(nearest).find(Boolean)?.fault(message);
   app.store.dispatchEvent(new CustomEvent("fault", {detail: {message}}));
 }
 

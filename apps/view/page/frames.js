@@ -119,7 +119,7 @@ export class Frames extends EventTarget {
   #failed(error, number) {
     this.#shown = number;
     this.dispatchEvent(new CustomEvent("fault", {detail: {error}}));
-    if (error.status === 0) setTimeout(() => this.refresh(), kAgain);
+    if (error.status === 0 || error.status >= 502) setTimeout(() => this.refresh(), kAgain);
   }
 
   #settle() {

@@ -10,6 +10,7 @@ const kFormats = {
 };
 const kLocal = 4e5, kRemote = 5e3; // bytes/ms before anything was measured
 const kTelling = 5e4;              // bytes from which an answer tells the link's speed
+const kLeast = 2e3, kSlow = 10;    // bytes, ms
 const kTellingPixels = 0.05;       // million pixels from which one tells what formats cost
 const kClock = 0.2;                // ms that clocks of browsers tell apart
 const kHold = 0.85;                // another format must be that much faster
@@ -69,9 +70,12 @@ export class Link {
 
   /** @param {number} bytes @param {number} ms from the first byte to the last */
   received(bytes, ms) {
-    if (bytes < kTelling || !(ms >= 0)) return;
+    if (!(ms >= 0) || bytes < kLeast) return;
     const rate = bytes / Math.max(ms, kClock);
-    this.rate = this.telling ? Math.exp(mean(Math.log(this.rate), Math.log(rate))) : rate;
+    // A small answer tells only that the link is slow, if it is.
+    if (bytes < kTelling && (ms < kSlow || rate > this.rate)) return;
+    const share = bytes < kTelling ? 0.15 : Math.min(0.3 + ms / 500, 0.9);
+    this.rate = this.telling ? Math.exp(mean(Math.log(this.rate), Math.log(rate), share)) : rate;
     this.telling = true;
   }
 

@@ -38,7 +38,7 @@ function keepAddress(app) {
   let last = 0;
   const write = async () => {
     const number = ++last;
-    const to = await address(app);
+    const to = await address(app).catch(() => location.href); // browsers that cannot deflate
     if (number === last && to !== location.href) history.replaceState(null, "", to);
   };
   app.store.addEventListener("history", write);
