@@ -174,7 +174,8 @@ nlohmann::json with_texture(const std::string& file) {
 
 TEST(ViewLooks, NameNoFilesOfTheirOwnChoice) {
   const Manifest manifest = manifest_with(with_texture(kEarth).dump());
-  const Looks looks(manifest, "out/data.exr", "", {});
+  const TemporaryFolder folder;
+  const Looks looks(manifest, "out/data.exr", "", {}, folder);
   EXPECT_NO_THROW(looks.parse(with_texture(kEarth), manifest, 0));
   for (const std::string file :
        {"/etc/passwd", "earth.jpg", "../earth.jpg", "/usr/share/xplanet/images/./earth.jpg"})
@@ -200,7 +201,8 @@ std::string bytes_of(const std::string& path) {
 
 TEST(ViewLooks, TakePicturesIn) {
   const Manifest manifest = manifest_with("{}");
-  Looks looks(manifest, "data.exr", "", {});
+  const TemporaryFolder folder;
+  Looks looks(manifest, "data.exr", "", {}, folder);
   const std::string earth = bytes_of(kEarth), night = bytes_of("/usr/share/xplanet/images/night.jpg");
   const Looks::Texture sent = looks.add_texture("../..\\map one.jpg", earth);
   EXPECT_EQ(sent.name, "map-one.jpg");

@@ -33,7 +33,8 @@ Answer page(std::string_view name) {
 Api::Api(const ApiOptions& options)
     : options_(options),
       library_(options.data, options.most_bytes),
-      looks_(library_.entries().front().manifest, options.data.front(), options.look_file, options.settings),
+      looks_(library_.entries().front().manifest, options.data.front(), options.look_file, options.settings,
+             folder_),
       viewers_(options.most_viewers) {}
 
 const std::vector<Api::RouteEntry>& Api::routes() {

@@ -66,9 +66,9 @@ class Api {
 
   ApiOptions options_;
   Library library_;
+  TemporaryFolder folder_;
   Looks looks_;
   Viewers viewers_;
-  TemporaryFolder folder_;
   std::atomic<int> heavy_ = 0, serial_ = 0;
 };
 

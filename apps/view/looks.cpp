@@ -42,8 +42,8 @@ std::string plain_name(const std::string& name) {
 }  // namespace
 
 Looks::Looks(const Manifest& manifest, const std::string& data, const std::string& look_file,
-             const std::vector<std::string>& settings)
-    : first_(pr::read_document(manifest, data, look_file, settings)) {
+             const std::vector<std::string>& settings, const TemporaryFolder& folder)
+    : first_(pr::read_document(manifest, data, look_file, settings)), folder_(folder) {
   pr::look_at(first_, manifest, 0);
   auto names = std::make_shared<Names>();
   collect_files(*first_.json, first_.source.folder, *names);

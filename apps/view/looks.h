@@ -17,8 +17,9 @@ class Looks {
  public:
   /// The look to begin with: that of the dataset in `data`, or the file, with the settings over it. Throws
   /// InputError as the command line does.
+  /// What is sent is kept in `folder`, which must outlive this.
   Looks(const Manifest& manifest, const std::string& data, const std::string& look_file,
-        const std::vector<std::string>& settings);
+        const std::vector<std::string>& settings, const TemporaryFolder& folder);
 
   const nlohmann::json& first() const { return *first_.json; }
 
@@ -44,7 +45,7 @@ class Looks {
   Texture keep(const std::string& name, const std::string& path, const std::string& sha256);
 
   postrender::LookDocument first_;
-  TemporaryFolder folder_;
+  const TemporaryFolder& folder_;
   mutable std::mutex mutex_;
   std::shared_ptr<const Names> names_;   ///< as looks have them, and their paths
   std::map<std::string, Texture> sent_;  ///< by the SHA-256 of their bytes

@@ -200,7 +200,7 @@ def main():
             attack(server)
             time.sleep(1)  # rates are limited too
             alive(server)
-        noise(server, 300 // SLOW)
+        noise(server, int(os.environ.get("NULLCONE_NOISE", 300)) // SLOW)
         for attack in [thousand_connections, slow_and_vanished, flood]:
             attack(server)
             alive(server)

@@ -8,6 +8,9 @@ export class ApiError extends Error {
   }
 }
 
+/** Whether asking again later may help. */
+export const isLost = ({status}) => status === 0 || status >= 502;
+
 const kAgain = [100, 250, 500, 1000, 2000]; // ms to wait when the server is busy
 
 /** 16 hex digits: this page, whose renderers the server keeps. */

@@ -1,11 +1,11 @@
 // Keeps the look in full up to date, and puts the server's complaints beside the controls that they are about.
 
-import {ApiError} from "./api.js";
+import {ApiError, isLost} from "./api.js";
 
 /** Asks api/look after each change that is not part of a drag; the last answer counts. */
 export function fill(app) {
   const {store} = app;
-  let last = 0, asked = false;
+  let last = 0, asked = false, unanswered = false;
   const ask = async () => {
     asked = false;
     const number = ++last;
@@ -13,11 +13,13 @@ export function fill(app) {
     try {
       const answer = await app.api.json("api/look", {query: {data, frame}, body: store.look});
       if (number !== last) return;
+      unanswered = false;
       clear(app);
       store.fill(answer);
     } catch (error) {
       if (number !== last) return;
       if (!(error instanceof ApiError)) throw error;
+      unanswered = isLost(error);
       complain(app, error.message, "look");
     }
   };
@@ -28,7 +30,10 @@ export function fill(app) {
   store.addEventListener("history", soon);
   app.addEventListener("view", soon);
   app.frames.addEventListener("fault", ({detail}) => complain(app, detail.error.message, "frame"));
-  app.frames.addEventListener("shown", () => app.fault === "frame" && clear(app));
+  app.frames.addEventListener("shown", () => {
+    if (app.fault === "frame") clear(app);
+    if (unanswered) soon();
+  });
   soon();
 }
 

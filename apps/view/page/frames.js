@@ -1,7 +1,7 @@
 // Asks for frames whenever the look, the view or the size is another one. The newest wins: while two are under way
 // nothing more is asked for, and what has changed meanwhile is asked for next.
 
-import {ApiError} from "./api.js";
+import {ApiError, isLost} from "./api.js";
 import {Link} from "./link.js";
 
 const kSmooth = 33;      // ms from a slider to the frame that shows it
@@ -119,7 +119,7 @@ export class Frames extends EventTarget {
   #failed(error, number) {
     this.#shown = number;
     this.dispatchEvent(new CustomEvent("fault", {detail: {error}}));
-    if (error.status === 0 || error.status >= 502) setTimeout(() => this.refresh(), kAgain);
+    if (isLost(error)) setTimeout(() => this.refresh(), kAgain);
   }
 
   #settle() {
