@@ -48,5 +48,5 @@ install() {
 
 # What drives the browser in tests; its exact version and SHA-512 stand in package-lock.json.
 if [ "${1:-}" = --test ] && [ ! tests/view/node_modules/.package-lock.json -nt tests/view/package-lock.json ]; then
-  npm ci --prefix tests/view --silent
+  npm ci --prefix tests/view --loglevel=error
 fi

@@ -109,6 +109,8 @@ test("history: what is dragged is one step", () => {
   store.undo();
   store.set("/gamut", "hue_preserving");
   assert.equal(store.canRedo, false);
+  store.undo();
+  assert.equal(store.get("/gamut"), undefined, "what was undone and written over is gone");
 });
 
 test("history: undo in the middle of a drag goes to before it, and nothing is a step", () => {

@@ -50,6 +50,9 @@ export class Live {
     this.scene = new Store(sceneNumbers(app.dataset.scene));
     this.source = new LiveSource(app, this.scene, app.view.data === "live" ? 0 : app.view.data);
     this.hand = new LiveHand(app, this);
+    this.steering = false; // keys are those of steering
+    this.moving = false;   // steering, and not at rest
+    this.source.hurry = () => this.moving || this.hand.held;
     this.place = html("div", {}); // of what steers
     body.append(html("p", {class: "hint"}, "Drags and changes here trace the scene again, coarsely while something moves."),
       this.#modes(), html("div", {class: "row"}, this.#undo, this.#redo, this.#reset, this.#back, this.#save),
@@ -74,7 +77,7 @@ export class Live {
       this.#undo.disabled = !scene.canUndo;
       this.#redo.disabled = !scene.canRedo;
       this.#reset.disabled = Object.keys(source.changes).length === 0;
-      if (!this.hand.held) frames.dragging = false;
+      if (!this.source.hurry()) frames.dragging = false;
     });
     this.#undo.addEventListener("click", () => scene.undo());
     this.#redo.addEventListener("click", () => scene.redo());

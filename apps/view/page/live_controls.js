@@ -17,17 +17,17 @@ export function liveControls(live) {
   const event = (at, pointer) => ["t", "x", "y", "z"].map((name, i) =>
     pointer !== "/observer" && !scene.get(`${pointer}/velocity`) && i === 0 ? null : number(`${pointer}/event/${i}`, name, {min: at[i] - far, max: at[i] + far}));
   const velocity = (pointer) => ["x", "y", "z"].map((name, i) =>
-    number(`${pointer}/velocity/${i}`, `velocity ${name}`, {min: -0.99, max: 0.99, least: -0.9999999, most: 0.9999999}));
+    number(`${pointer}/velocity/${i}`, `Velocity ${name}`, {min: -0.99, max: 0.99, least: -0.9999999, most: 0.9999999}));
 
   const element = html("div", {},
     group("Observer", ...event(scene.base.observer.event, "/observer"), ...velocity("/observer"), pace(live)),
     group("Camera",
-      number("/camera/azimuth_deg", "azimuth", {min: -180, max: 180, unit: "°"}),
-      number("/camera/elevation_deg", "elevation", {min: -90, max: 90, least: -90, most: 90, unit: "°"}),
-      number("/camera/roll_deg", "roll", {min: -180, max: 180, unit: "°"}),
+      number("/camera/azimuth_deg", "Azimuth", {min: -180, max: 180, unit: "°"}),
+      number("/camera/elevation_deg", "Elevation", {min: -90, max: 90, least: -90, most: 90, unit: "°"}),
+      number("/camera/roll_deg", "Roll", {min: -180, max: 180, unit: "°"}),
       ...fields(camera, number),
-      number("/camera/resolution/0", "width", {min: 64, max: 4096, least: 16, whole: true, slider: false, unit: "px"}),
-      number("/camera/resolution/1", "height", {min: 64, max: 4096, least: 16, whole: true, slider: false, unit: "px"})),
+      number("/camera/resolution/0", "Width", {min: 64, max: 4096, least: 16, whole: true, slider: false, unit: "px"}),
+      number("/camera/resolution/1", "Height", {min: 64, max: 4096, least: 16, whole: true, slider: false, unit: "px"})),
     ...(Object.keys(metric).length > 0 ? [group("Spacetime", ...Object.keys(metric).map((name) =>
       number(`/metric/${name}`, name, {min: metric[name] / 10, max: metric[name] * 10, least: 1e-6, scale: "log"})))] : []));
 
@@ -37,7 +37,7 @@ export function liveControls(live) {
     details.addEventListener("toggle", () => {
       const pointer = `/objects/${name}`;
       details.append(...event(numbers.event, pointer).filter(Boolean), ...(numbers.velocity ? velocity(pointer) : []),
-        ...(numbers.radius ? [number(`${pointer}/radius`, "radius", {min: numbers.radius / 10, max: numbers.radius * 10, least: 1e-9, scale: "log"})] : []));
+        ...(numbers.radius ? [number(`${pointer}/radius`, "Radius", {min: numbers.radius / 10, max: numbers.radius * 10, least: 1e-9, scale: "log"})] : []));
       all.forEach((control) => control.update());
     }, {once: true});
     element.append(details);
@@ -51,14 +51,20 @@ export function liveControls(live) {
 function fields({fov_deg}, number) {
   const range = {min: 1, max: 179, least: 0.001, most: 360, unit: "°"};
   if (fov_deg === undefined) return [];
-  if (typeof fov_deg === "number") return [number("/camera/fov_deg", "field of view", range)];
-  return [number("/camera/fov_deg/0", "field of view", {...range, max: 360}), number("/camera/fov_deg/1", "its height", {...range, max: 180})];
+  if (typeof fov_deg === "number") return [number("/camera/fov_deg", "Field of view", range)];
+  return [number("/camera/fov_deg/0", "Field of view", {...range, max: 360}), number("/camera/fov_deg/1", "Its height", {...range, max: 180})];
 }
 
+/** In lengths a second. */
 function pace(live) {
   const {hand} = live, value = hand.pace;
-  const control = numberControl({label: "pace of the keys", value, min: value / 20, max: value * 20, scale: "log", digits: 3,
-    reset: () => ((hand.pace = value), (control.value = value)), onInput: (x) => (hand.pace = x)});
+  const control = numberControl({label: "Pace of keys", value, min: value / 20, max: value * 20, scale: "log", digits: 3,
+    reset: () => take(value), onInput: (x) => take(x)});
+  const take = (x) => {
+    control.value = hand.pace = x;
+    control.changed?.(x !== value);
+  };
+  take(value);
   return control;
 }
 

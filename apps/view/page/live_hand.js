@@ -57,7 +57,9 @@ export class LiveHand {
   #phase(phase) {
     this.#dragging = phase !== "end";
     if (phase === "start") this.#app.frames.dragging = true;
-    if (phase === "end") this.#live.scene.commit();
+    if (phase !== "end") return;
+    this.#live.scene.commit();
+    if (!this.#live.moving) this.#app.frames.dragging = false;
   }
 
   #look(phase, event, {dx, dy}) {

@@ -22,6 +22,8 @@ export class LiveSource extends EventTarget {
     this.#app = app;
     this.#scene = scene;
     this.data = data;
+    /** Whether something moves: then frames are coarse, whoever asks. */
+    this.hurry = () => false;
     scene.addEventListener("change", () => ++this.#version);
   }
 
@@ -36,15 +38,15 @@ export class LiveSource extends EventTarget {
 
   /** In the place of frames.source. */
   async frame(query, look) {
-    const {version, scale} = this.#traced;
-    if (version === this.#version && (scale === 1 || query.scale > 1)) {
+    const {version, scale} = this.#traced, coarse = query.scale > 1 || this.hurry();
+    if (version === this.#version && (scale === 1 || coarse)) {
       try {
         return await this.#seen(query, look, scale);
       } catch (error) {
         if (!(error instanceof ApiError) || error.status !== 409) throw error; // the server has forgotten it
       }
     }
-    return this.#trace(query, look);
+    return this.#trace(query, look, coarse);
   }
 
   /** What was traced last, with another look. */
@@ -54,9 +56,9 @@ export class LiveSource extends EventTarget {
     return frame;
   }
 
-  async #trace({scale: wanted, format, frame: key}, look) {
+  async #trace({format, frame: key}, look, coarse) {
     const version = this.#version, number = ++this.#sent;
-    const scale = wanted === 1 ? 1 : (this.#scale = dragScale(this.#took, this.#scale, kMost));
+    const scale = coarse ? (this.#scale = dragScale(this.#took, this.#scale, kMost)) : 1;
     const query = {data: this.data, frame: key, scale, format};
     const frame = await this.#app.api.frame(query, {scene: this.changes, look}, "api/trace");
     frame.scale = scale;

@@ -136,11 +136,11 @@ function menu(app) {
   };
   const button = (text, click, title = "") => make("button", {type: "button", click, title}, text);
   items.append(
-    make("h3", {}, "Picture, as nullcone-postrender writes it"),
+    make("h2", {}, "Picture, as nullcone-postrender writes it"),
     make("div", {class: "row"}, format, button("Save picture", () => savePicture(app, chosen().kind, chosen().bits))),
-    make("h3", {}, "Look"), make("div", {class: "row"}, button("Save look.json", () => saveLook(app), "Ctrl+S")), lookNote,
-    make("h3", {}, "Command line that makes this picture"), line, lineNote, make("div", {class: "row"}, button("Copy command line", copyFrom(line, "Command line"))),
-    make("h3", {}, "Address of this view"), url, make("p", {class: "hint"}, "For a colleague whose nullcone-view shows the same dataset."),
+    make("h2", {}, "Look"), make("div", {class: "row"}, button("Save look.json", () => saveLook(app), "Ctrl+S")), lookNote,
+    make("h2", {}, "Command line that makes this picture"), line, lineNote, make("div", {class: "row"}, button("Copy command line", copyFrom(line, "Command line"))),
+    make("h2", {}, "Address of this view"), url, make("p", {class: "hint"}, "For a colleague whose nullcone-view shows the same dataset."),
     make("div", {class: "row"}, button("Copy address", copyFrom(url, "Address"))));
   details.addEventListener("toggle", show);
   format.addEventListener("change", show);

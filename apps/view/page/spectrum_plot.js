@@ -37,7 +37,7 @@ const peakWords = (name, at, unit) =>
   at === null ? `${name}: dark.` : `${name}: greatest at ${text(at.wavelength_nm)} nm${at.edge ? " (end of the plot)" : ""}, ${text(at.value, 3)} ${unit}.`;
 
 export function summary(spectrum) {
-  const { wavelength_nm: at, emitted, observed, lines = [], unit = "" } = spectrum;
+  const { wavelength_nm: at, emitted, observed, lines = [] } = spectrum, unit = unitText(spectrum.unit);
   const words = [`${spectrum.object}, g ${text(spectrum.g)}.`];
   if (at.length) words.push(peakWords("Emitted", peak(at, emitted), unit), peakWords("Observed", peak(at, observed), unit));
   const strongest = [...lines].sort((a, b) => b.strength - a.strength).slice(0, 3);
@@ -57,6 +57,10 @@ function path(wavelengths, values, x, y, least) {
   });
   return out;
 }
+
+/** "W m^-2 nm^-1" with raised exponents. */
+export const unitText = (unit = "") =>
+  unit.replace(/\^(-?)(\d+)/g, (_, sign, digits) => (sign ? "⁻" : "") + [...digits].map((d) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[d]).join(""));
 
 let plots = 0;
 
@@ -110,6 +114,6 @@ export function spectrumPlot(spectrum, { logarithmic = false } = {}) {
       ...sticks(spectrum.lines ?? [], x, height)));
   const key = html("p", { class: "plot-key", "aria-hidden": "true" },
     html("span", { class: "plot-emitted" }, "— emitted"), " ", html("span", { class: "plot-observed" }, "– – observed"),
-    ` in ${spectrum.unit ?? ""}`);
+    ` in ${unitText(spectrum.unit)}`);
   return html("figure", { class: "spectrum" }, drawing, key, html("figcaption", { class: "plot-words" }, words));
 }

@@ -62,7 +62,12 @@ class Steering {
     const number = (key, label, unit) => {
       const first = this.#settings[key];
       const control = numberControl({label, unit, value: first, min: first / 100, max: first * 100, least: 1e-9, most: 3e8, scale: "log", digits: 4,
-        reset: () => (control.value = this.#settings[key] = first), onInput: (x) => (this.#settings[key] = x)});
+        reset: () => take(first), onInput: (x) => take(x)});
+      const take = (x) => {
+        control.value = this.#settings[key] = x;
+        control.changed?.(x !== first);
+      };
+      take(first);
       return control;
     };
     const row = (key, name) => html("tr", {}, html("th", {scope: "row"}, name), (this.#cells[key] = html("td", {}, "")));
@@ -71,7 +76,7 @@ class Steering {
       html("div", {class: "row"}, this.#drive, html("label", {}, this.#level, " stay at this height")),
       html("p", {class: "hint"}, "W and S accelerate along the view, A and D turn, Q and E thrust aside, Space brakes to rest."),
       html("div", {class: "steer-keys", role: "group", "aria-label": "steering"}, ...buttons),
-      number("c", "speed of light", "1/s"), number("acceleration", "acceleration", "1/s²"),
+      number("c", "Speed of light", "1/s"), number("acceleration", "Acceleration", "1/s²"),
       html("table", {class: "records steer-readings"}, html("caption", {class: "hidden"}, "instruments"), html("tbody", {},
         row("beta", "speed β"), row("gamma", "γ"), row("own", "own clock"), row("street", "the street's clock"), row("ahead", "g ahead"))));
   }
@@ -113,7 +118,7 @@ class Steering {
 
   #pause() {
     if (!this.#driving) return;
-    this.#driving = this.#live.steering = false;
+    this.#driving = this.#live.steering = this.#live.moving = false;
     this.#held.clear();
     this.#drive.textContent = "Steer";
     this.#drive.setAttribute("aria-pressed", "false");
@@ -124,7 +129,8 @@ class Steering {
     if (!this.#driving) return;
     const now = performance.now(), seconds = Math.min((now - this.#before) / 1000, kLongest);
     this.#before = now;
-    this.#state = drive.advance(this.#state, this.#held, seconds, {...this.#settings, level: this.#level.checked});
+    const turned = angles(this.#live.scene.look.camera); // a drag may look round meanwhile
+    this.#state = drive.advance({...this.#state, angles: turned}, this.#held, seconds, {...this.#settings, level: this.#level.checked});
     this.#own = this.#state.own;
     this.#street = this.#state.street;
     this.#write();
@@ -135,12 +141,16 @@ class Steering {
   /** Who rests among what rests sees the same again: then the picture becomes fine. */
   #write() {
     const {scene} = this.#live, {observer, angles: turned} = drive.asScene(this.#state);
-    const still = this.#held.size === 0 && this.#state.u[0] === 1 && !this.#movers;
-    if (still) {
-      if (this.#app.frames.dragging) scene.commit();
-      return;
-    }
+    const pressed = [...this.#held].some((key) => key !== " ");
+    if (!pressed && this.#state.u[0] === 1 && !this.#movers) return this.#rest();
+    this.#live.moving = true;
     scene.replace({...scene.look, observer, camera: {...scene.look.camera, ...fromAngles(turned)}}, {live: true});
+  }
+
+  #rest() {
+    if (!this.#live.moving) return;
+    this.#live.moving = false;
+    this.#live.scene.commit();
   }
 
   get #movers() {
