@@ -37,7 +37,7 @@ Answer refusal(int status, std::string_view message);
 
 struct HttpLimits {
   std::size_t connections = 256;  ///< beyond, those that have waited longest make room
-  std::size_t head_bytes = 16 * 1024;
+  std::size_t head_bytes = 16384;
   std::chrono::seconds request{20};  ///< from the first byte to the last, texture files apart
   std::chrono::seconds upload{300};
   std::chrono::seconds idle{60}, write{120};

@@ -1,5 +1,6 @@
 #include "apps/view/library.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -31,8 +32,8 @@ int number_in(const std::string& path) {
 
 /// Files are frames by the numbers in their names where these tell all of them apart, else in their order.
 std::vector<int> frames_of(const std::vector<std::string>& paths) {
-  std::vector<int> out;
-  for (const std::string& path : paths) out.push_back(number_in(path));
+  std::vector<int> out(paths.size());
+  std::ranges::transform(paths, out.begin(), number_in);
   const std::set<int> different(out.begin(), out.end());
   const bool told_apart = paths.size() > 1 && different.size() == paths.size() && *different.begin() >= 0;
   for (std::size_t i = 0; !told_apart && i < out.size(); ++i) out[i] = static_cast<int>(i);

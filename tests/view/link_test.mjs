@@ -5,7 +5,8 @@ import test from "node:test";
 import {Link, speed} from "../../apps/view/page/link.js";
 
 const kPixels = 1280 * 1024;
-const kDrag = {lossless: false, pixels: kPixels / 4}, kStill = {lossless: true, pixels: kPixels};
+const kDrag = {lossless: false, pixels: kPixels / 4},
+  kStill = {lossless: true, pixels: kPixels};
 
 /** `count` answers of `bytes` over a link of `rate` bytes/ms. */
 function receive(link, rate, bytes, count = 20) {
@@ -67,7 +68,14 @@ test("formats that two measurements tell hardly apart do not take turns", () => 
 test("what encoding takes is learnt", () => {
   const link = new Link("127.0.0.1");
   receive(link, 5e4, 4 * kPixels); // 50 MB/s: 105 ms raw
-  const frame = {format: "png", bytes: kPixels / 4, width: 1280, height: 1024, times: {render: 10, encode: 20}, decoded: 5};
+  const frame = {
+    format: "png",
+    bytes: kPixels / 4,
+    width: 1280,
+    height: 1024,
+    times: {render: 10, encode: 20},
+    decoded: 5,
+  };
   for (let i = 0; i < 10; ++i) link.measured(frame);
   assert.equal(link.choose(kStill), "png");
   for (let i = 0; i < 20; ++i) link.measured({...frame, times: {render: 10, encode: 300}});

@@ -11,7 +11,10 @@ import {fromNotch, notches, nudged, numberText, toNotch, typedNumber} from "../.
 
 const kBase = {
   objects: {
-    earth: {texture: {type: "image", file: "maps/earth.jpg"}, spectrum: {type: "gaussian", centre_nm: 550, fwhm_nm: 40}},
+    earth: {
+      texture: {type: "image", file: "maps/earth.jpg"},
+      spectrum: {type: "gaussian", centre_nm: 550, fwhm_nm: 40},
+    },
     moon: {opacity: 0.5},
   },
   exposure: {white_cd_m2: "auto"},
@@ -37,18 +40,49 @@ test("changed() leaves the document alone and makes the way", () => {
   const before = structuredClone(kBase);
   assert.deepEqual(changed(kBase, "/lights/sun/on", false).lights, {sun: {on: false}});
   assert.deepEqual(changed(kBase, "/tone/k", undefined).tone, {curve: "exponential"});
-  assert.deepEqual(changed({a: [[1, 2], [3, 4]]}, "/a/1", [5, 6]), {a: [[1, 2], [5, 6]]});
+  assert.deepEqual(
+    changed(
+      {
+        a: [
+          [1, 2],
+          [3, 4],
+        ],
+      },
+      "/a/1",
+      [5, 6],
+    ),
+    {
+      a: [
+        [1, 2],
+        [5, 6],
+      ],
+    },
+  );
   assert.equal(changed(kBase, "/tone/k", 3).objects, kBase.objects);
   assert.deepEqual(kBase, before);
 });
 
 test("merge patches: the examples of RFC 7386, appendix A", () => {
   const kExamples = [
-    [{a: "b"}, {a: "c"}, {a: "c"}], [{a: "b"}, {b: "c"}, {a: "b", b: "c"}], [{a: "b"}, {a: null}, {}],
-    [{a: "b", b: "c"}, {a: null}, {b: "c"}], [{a: ["b"]}, {a: "c"}, {a: "c"}], [{a: "c"}, {a: ["b"]}, {a: ["b"]}],
-    [{a: {b: "c"}}, {a: {b: "d", c: null}}, {a: {b: "d"}}], [{a: [{b: "c"}]}, {a: [1]}, {a: [1]}],
-    [["a", "b"], ["c", "d"], ["c", "d"]], [{a: "b"}, ["c"], ["c"]], [{a: "foo"}, null, null], [{a: "foo"}, "bar", "bar"],
-    [{e: null}, {a: 1}, {e: null, a: 1}], [[1, 2], {a: "b", c: null}, {a: "b"}], [{}, {a: {bb: {ccc: null}}}, {a: {bb: {}}}],
+    [{a: "b"}, {a: "c"}, {a: "c"}],
+    [{a: "b"}, {b: "c"}, {a: "b", b: "c"}],
+    [{a: "b"}, {a: null}, {}],
+    [{a: "b", b: "c"}, {a: null}, {b: "c"}],
+    [{a: ["b"]}, {a: "c"}, {a: "c"}],
+    [{a: "c"}, {a: ["b"]}, {a: ["b"]}],
+    [{a: {b: "c"}}, {a: {b: "d", c: null}}, {a: {b: "d"}}],
+    [{a: [{b: "c"}]}, {a: [1]}, {a: [1]}],
+    [
+      ["a", "b"],
+      ["c", "d"],
+      ["c", "d"],
+    ],
+    [{a: "b"}, ["c"], ["c"]],
+    [{a: "foo"}, null, null],
+    [{a: "foo"}, "bar", "bar"],
+    [{e: null}, {a: 1}, {e: null, a: 1}],
+    [[1, 2], {a: "b", c: null}, {a: "b"}],
+    [{}, {a: {bb: {ccc: null}}}, {a: {bb: {}}}],
   ];
   for (const [document, patch, result] of kExamples) assert.deepEqual(merged(document, patch), result);
 });
@@ -56,7 +90,12 @@ test("merge patches: the examples of RFC 7386, appendix A", () => {
 test("a difference makes the look of the base, and says only what differs", () => {
   const patch = difference(kBase, kLook);
   assert.deepEqual(merged(kBase, patch), kLook);
-  assert.deepEqual(patch.objects.earth.spectrum, {type: "black_body", temperature_K: 5800, centre_nm: null, fwhm_nm: null});
+  assert.deepEqual(patch.objects.earth.spectrum, {
+    type: "black_body",
+    temperature_K: 5800,
+    centre_nm: null,
+    fwhm_nm: null,
+  });
   assert.equal(patch.tone, null);
   assert.ok(!("opacity" in patch.objects.moon));
   assert.deepEqual(difference(kBase, structuredClone(kBase)), {});
@@ -73,7 +112,10 @@ function set(document, setting) {
   try {
     value = JSON.parse(text);
   } catch {}
-  return merged(document, keys.reduceRight((inner, key) => ({[key]: inner}), value));
+  return merged(
+    document,
+    keys.reduceRight((inner, key) => ({[key]: inner}), value),
+  );
 }
 
 test("settings make the look of the base", () => {
@@ -128,7 +170,8 @@ test("history: undo in the middle of a drag goes to before it, and nothing is a 
 test("what holds is the look's, else the default; reset goes back to the base", () => {
   const store = new Store(kBase);
   const heard = [];
-  for (const name of ["change", "history", "full"]) store.addEventListener(name, ({detail}) => heard.push([name, detail.live]));
+  for (const name of ["change", "history", "full"])
+    store.addEventListener(name, ({detail}) => heard.push([name, detail.live]));
   store.fill({full: {...kBase, gamut: "hue_preserving", tone: {curve: "exponential", k: 2}}});
   assert.equal(store.get("/gamut"), "hue_preserving");
   store.set("/tone/k", 7);
@@ -166,7 +209,23 @@ test("addresses: damage is refused", async () => {
 });
 
 test("words of a shell come back as they were", () => {
-  const kWords = ["plain", "a b", "it's", "$HOME `id` \"x\" \\", "", "new\nline", "=x", "~", "*", "x=[1,2]", "!", "é", "#", "-o", "{a,b}"];
+  const kWords = [
+    "plain",
+    "a b",
+    "it's",
+    '$HOME `id` "x" \\',
+    "",
+    "new\nline",
+    "=x",
+    "~",
+    "*",
+    "x=[1,2]",
+    "!",
+    "é",
+    "#",
+    "-o",
+    "{a,b}",
+  ];
   for (const word of kWords) {
     const got = spawnSync("/bin/sh", ["-c", `printf %s ${quoted(word)}`], {encoding: "utf8"});
     assert.equal(got.stdout, word);
@@ -175,8 +234,18 @@ test("words of a shell come back as they were", () => {
 });
 
 test("the command line", () => {
-  const what = {path: "out/my earth.exr", lookFile: "a.json", given: ["gamut=clip"], base: kBase, look: {...kBase, background: [0, 0, 1]}, frame: 3};
-  assert.equal(commandLine(what), "nullcone-postrender 'out/my earth.exr' --look a.json --set gamut=clip --set 'background=[0,0,1]' --frame 3 -o picture.png");
+  const what = {
+    path: "out/my earth.exr",
+    lookFile: "a.json",
+    given: ["gamut=clip"],
+    base: kBase,
+    look: {...kBase, background: [0, 0, 1]},
+    frame: 3,
+  };
+  assert.equal(
+    commandLine(what),
+    "nullcone-postrender 'out/my earth.exr' --look a.json --set gamut=clip --set 'background=[0,0,1]' --frame 3 -o picture.png",
+  );
   assert.equal(commandLine({path: "-x.exr", base: {}, look: {}}), "nullcone-postrender ./-x.exr -o picture.png");
   assert.deepEqual(filesOf(kBase), ["maps/earth.jpg"]);
   assert.deepEqual(filesOf({sensor: {file: "a"}, o: [{file: "b"}, {file: "a"}]}), ["a", "b"]);

@@ -11,7 +11,8 @@ export function setup(app) {
 
 // --- Exposure ---
 
-let white = null, note = null; // of the last frame
+let white = null,
+  note = null; // of the last frame
 
 /** What `auto` came to; 1 where nothing has a physical unit. */
 function showWhite(next) {
@@ -28,16 +29,54 @@ const kWhites = {
 function exposure({store}) {
   const pointer = "/exposure/white_cd_m2";
   const value = store.get(pointer) ?? "auto";
-  const mode = value === "auto" ? "auto" : value.auto ?? "fixed";
+  const mode = value === "auto" ? "auto" : (value.auto ?? "fixed");
   const choose = {
-    kind: "select", pointer, label: "White", value: mode, put: (next) => store.set(pointer, kWhites[next]?.() ?? "auto"),
-    options: [{value: "auto", text: "automatic"}, {value: "percentile", text: "percentile"}, {value: "log_average", text: "log average"},
-      {value: "fixed", text: "fixed luminance"}],
+    kind: "select",
+    pointer,
+    label: "White",
+    value: mode,
+    put: (next) => store.set(pointer, kWhites[next]?.() ?? "auto"),
+    options: [
+      {value: "auto", text: "automatic"},
+      {value: "percentile", text: "percentile"},
+      {value: "log_average", text: "log average"},
+      {value: "fixed", text: "fixed luminance"},
+    ],
   };
   const byMode = {
-    percentile: {kind: "number", pointer: `${pointer}/percentile`, label: "Percentile", unit: "%", min: 50, max: 100, step: 0.1, least: 0, most: 100, begin: 99},
-    log_average: {kind: "number", pointer: `${pointer}/key`, label: "Key", scale: "log", min: 0.01, max: 1, least: 0, fallback: 0.18},
-    fixed: {kind: "number", pointer, label: "Luminance", unit: "cd/m²", scale: "log", min: 1e-3, max: 1e14, least: 1e-20, most: 1e20},
+    percentile: {
+      kind: "number",
+      pointer: `${pointer}/percentile`,
+      label: "Percentile",
+      unit: "%",
+      min: 50,
+      max: 100,
+      step: 0.1,
+      least: 0,
+      most: 100,
+      begin: 99,
+    },
+    log_average: {
+      kind: "number",
+      pointer: `${pointer}/key`,
+      label: "Key",
+      scale: "log",
+      min: 0.01,
+      max: 1,
+      least: 0,
+      fallback: 0.18,
+    },
+    fixed: {
+      kind: "number",
+      pointer,
+      label: "Luminance",
+      unit: "cd/m²",
+      scale: "log",
+      min: 1e-3,
+      max: 1e14,
+      least: 1e-20,
+      most: 1e20,
+    },
   };
   const build = () => {
     note = make("p", {class: "hint"});
@@ -45,8 +84,21 @@ function exposure({store}) {
     return note;
   };
   return [
-    {kind: "number", pointer: "/exposure/ev", label: "Exposure", unit: "EV", min: -10, max: 10, step: 0.05, least: -64, most: 64, fallback: 0},
-    choose, byMode[mode], {kind: "node", key: "white", make: build},
+    {
+      kind: "number",
+      pointer: "/exposure/ev",
+      label: "Exposure",
+      unit: "EV",
+      min: -10,
+      max: 10,
+      step: 0.05,
+      least: -64,
+      most: 64,
+      fallback: 0,
+    },
+    choose,
+    byMode[mode],
+    {kind: "node", key: "white", make: build},
   ];
 }
 
@@ -55,23 +107,42 @@ function exposure({store}) {
 const kCurves = {
   exponential: {k: 1},
   filmic: {white: 5.6},
-  table: {points: [[0.18, 0.35], [1, 0.8], [8, 1]]},
+  table: {
+    points: [
+      [0.18, 0.35],
+      [1, 0.8],
+      [8, 1],
+    ],
+  },
 };
 const kCurveFields = {
   exponential: [{key: "k", kind: "number", label: "k", scale: "log", min: 0.01, max: 100, least: 1e-12, fallback: 1}],
-  filmic: [{key: "white", kind: "number", label: "Its white", scale: "log", min: 0.1, max: 100, least: 1e-12, fallback: 5.6}],
-  table: [{key: "points", kind: "json", label: "Points", title: "[luminance, what is shown], ..."},
-    {key: "interpolation", kind: "select", label: "Between them", options: ["linear", "smooth"], fallback: "linear"}],
+  filmic: [
+    {key: "white", kind: "number", label: "Its white", scale: "log", min: 0.1, max: 100, least: 1e-12, fallback: 5.6},
+  ],
+  table: [
+    {key: "points", kind: "json", label: "Points", title: "[luminance, what is shown], ..."},
+    {key: "interpolation", kind: "select", label: "Between them", options: ["linear", "smooth"], fallback: "linear"},
+  ],
 };
 
 function tone({store}) {
   const curve = store.get("/tone/curve") ?? "linear";
   const put = (next) => store.set("/tone", {curve: next, ...structuredClone(kCurves[next] ?? {})});
-  const fields = (kCurveFields[curve] ?? []).filter(({key}) => key !== "points" || store.get("/tone/file") === undefined);
+  const fields = (kCurveFields[curve] ?? []).filter(
+    ({key}) => key !== "points" || store.get("/tone/file") === undefined,
+  );
   return [
     {kind: "group", label: "Tone curve"},
-    {kind: "select", pointer: "/tone/curve", label: "Curve", put, reset: () => store.reset("/tone"), fallback: "linear",
-      options: store.words["/tone/curve"] ?? ["linear", "exponential", "filmic", "table"]},
+    {
+      kind: "select",
+      pointer: "/tone/curve",
+      label: "Curve",
+      put,
+      reset: () => store.reset("/tone"),
+      fallback: "linear",
+      options: store.words["/tone/curve"] ?? ["linear", "exponential", "filmic", "table"],
+    },
     ...fields.map(({key, ...field}) => ({...field, pointer: `/tone/${key}`})),
   ];
 }
@@ -86,11 +157,35 @@ function whitePoint({store}) {
   const mode = typeof value === "string" ? value : "xy" in value ? "chromaticity" : "temperature";
   const put = (next) => store.set(pointer, structuredClone(kWhitePoints[next] ?? next));
   const fields = {
-    temperature: {kind: "number", pointer: `${pointer}/temperature_K`, label: "Temperature", unit: "K", scale: "log", min: 1000, max: 40000, least: 1000, digits: 5, begin: 3000},
-    chromaticity: {kind: "vector", pointer: `${pointer}/xy`, label: "xy", labels: ["x", "y"], min: 0, max: 0.8, step: 0.001, begin: [0.3127, 0.329]},
+    temperature: {
+      kind: "number",
+      pointer: `${pointer}/temperature_K`,
+      label: "Temperature",
+      unit: "K",
+      scale: "log",
+      min: 1000,
+      max: 40000,
+      least: 1000,
+      digits: 5,
+      begin: 3000,
+    },
+    chromaticity: {
+      kind: "vector",
+      pointer: `${pointer}/xy`,
+      label: "xy",
+      labels: ["x", "y"],
+      min: 0,
+      max: 0.8,
+      step: 0.001,
+      begin: [0.3127, 0.329],
+    },
   };
-  const options = [{value: "D65", text: "D65"}, {value: "equal_energy", text: "equal energy"}, {value: "temperature", text: "temperature"},
-    {value: "chromaticity", text: "chromaticity x, y"}];
+  const options = [
+    {value: "D65", text: "D65"},
+    {value: "equal_energy", text: "equal energy"},
+    {value: "temperature", text: "temperature"},
+    {value: "chromaticity", text: "chromaticity x, y"},
+  ];
   return [{kind: "select", pointer, label: "White point", value: mode, options, put}, fields[mode]];
 }
 
@@ -109,7 +204,24 @@ function colour(app) {
 function pixels() {
   return [
     {kind: "group", label: "Pixel filter"},
-    {kind: "select", pointer: "/pixel_filter/type", label: "Filter", options: ["box", "gaussian", "mitchell"], fallback: "box"},
-    {kind: "number", pointer: "/pixel_filter/width", label: "Width", unit: "pixels", min: 1, max: 8, step: 0.1, least: 1, most: 32, fallback: 1},
+    {
+      kind: "select",
+      pointer: "/pixel_filter/type",
+      label: "Filter",
+      options: ["box", "gaussian", "mitchell"],
+      fallback: "box",
+    },
+    {
+      kind: "number",
+      pointer: "/pixel_filter/width",
+      label: "Width",
+      unit: "pixels",
+      min: 1,
+      max: 8,
+      step: 0.1,
+      least: 1,
+      most: 32,
+      fallback: 1,
+    },
   ];
 }

@@ -5,14 +5,41 @@ import {pointerTo} from "./look_patch.js";
 import {spectrumFields} from "./spectrum_fields.js";
 import {make, selectControl} from "./widgets.js";
 
-const kTypes = ["display", "black_body", "tabulated", "lines", "constant", "equal_energy", "power_law", "gaussian", "dominant_wavelength", "sum", "lit"];
-const kIntensity = {kind: "number", label: "Intensity", scale: "log", min: 1e-3, max: 1e4, least: 0, most: 1e12, fallback: 1};
+const kTypes = [
+  "display",
+  "black_body",
+  "tabulated",
+  "lines",
+  "constant",
+  "equal_energy",
+  "power_law",
+  "gaussian",
+  "dominant_wavelength",
+  "sum",
+  "lit",
+];
+const kIntensity = {
+  kind: "number",
+  label: "Intensity",
+  scale: "log",
+  min: 1e-3,
+  max: 1e4,
+  least: 0,
+  most: 1e12,
+  fallback: 1,
+};
 
 export function setup(app) {
   const {element, body} = app.panel("lights", "Lamps and ambient light", {open: true});
   let name = app.dataset.lights[0] ?? null;
-  const choice = selectControl({label: "Lamp", options: app.dataset.lights, value: name, onChange: (next) => ((name = next), lamps.update())});
-  const fields = make("div"), around = make("div");
+  const choice = selectControl({
+    label: "Lamp",
+    options: app.dataset.lights,
+    value: name,
+    onChange: (next) => ((name = next), lamps.update()),
+  });
+  const fields = make("div"),
+    around = make("div");
   body.append(choice, fields, around);
   const lamps = new Form(app, fields, () => (name === null ? [] : lampFields(app, name)));
   new Form(app, around, () => (element.hidden ? [] : ambientFields(app)));
@@ -38,7 +65,12 @@ function lampFields(app, name) {
     {kind: "switch", pointer: `${pointer}/on`, label: "On", fallback: true},
     {...kIntensity, pointer: `${pointer}/intensity`},
     ...spectrumFields(app, `${pointer}/spectrum`, {types: kTypes}),
-    {kind: "json", pointer: `${pointer}/paths`, label: "Paths", title: "numbers of the paths of its light that count, from 0; empty: all"},
+    {
+      kind: "json",
+      pointer: `${pointer}/paths`,
+      label: "Paths",
+      title: "numbers of the paths of its light that count, from 0; empty: all",
+    },
     ...more.map((key) => ({kind: "json", pointer: `${pointer}/${key}`, label: key.replace("_", " ")})),
   ];
 }
@@ -51,6 +83,8 @@ function ambientFields(app) {
   return [
     {kind: "group", label: "Ambient"},
     {kind: "switch", pointer: "/ambient", label: "Ambient light", value: on, put},
-    ...(on ? [{...kIntensity, pointer: "/ambient/intensity"}, ...spectrumFields(app, "/ambient/spectrum", {types: kTypes})] : []),
+    ...(on
+      ? [{...kIntensity, pointer: "/ambient/intensity"}, ...spectrumFields(app, "/ambient/spectrum", {types: kTypes})]
+      : []),
   ];
 }

@@ -7,13 +7,27 @@ import {textureFields} from "./texture_fields.js";
 import {objectAt} from "./textures.js";
 import {make, selectControl} from "./widgets.js";
 
-const kIntensity = {kind: "number", label: "Intensity", scale: "log", min: 1e-3, max: 1e3, least: 0, most: 1e12, fallback: 1};
+const kIntensity = {
+  kind: "number",
+  label: "Intensity",
+  scale: "log",
+  min: 1e-3,
+  max: 1e3,
+  least: 0,
+  most: 1e12,
+  fallback: 1,
+};
 const kOpacity = {kind: "number", label: "Opacity", min: 0, max: 1, step: 0.01, least: 0, most: 1, fallback: 1};
 
 export function setup(app) {
   const {body} = app.panel("objects", "Object", {open: true});
   const names = () => app.dataset.objects.map(({name, shape}) => ({value: name, text: `${name} (${shape})`}));
-  const choice = selectControl({label: "Object", options: names(), value: app.selected, onChange: (name) => app.select(name)});
+  const choice = selectControl({
+    label: "Object",
+    options: names(),
+    value: app.selected,
+    onChange: (name) => app.select(name),
+  });
   const fields = make("div");
   body.append(choice, fields);
   const form = new Form(app, fields, () => (app.selected === null ? [] : objectFields(app, app.selected)));
@@ -36,15 +50,22 @@ export function setup(app) {
 function objectFields(app, name) {
   const pointer = pointerTo("objects", name);
   const surface = {
-    kind: "select", pointer: `${pointer}/surface/type`, label: "Surface", options: ["self_luminous", "lambertian"], fallback: "self_luminous",
-    put: (type) => app.store.set(`${pointer}/surface`, {type}), reset: () => app.store.reset(`${pointer}/surface`),
+    kind: "select",
+    pointer: `${pointer}/surface/type`,
+    label: "Surface",
+    options: ["self_luminous", "lambertian"],
+    fallback: "self_luminous",
+    put: (type) => app.store.set(`${pointer}/surface`, {type}),
+    reset: () => app.store.reset(`${pointer}/surface`),
   };
   const lit = app.dataset.lights.length > 0 || app.store.get(`${pointer}/surface/type`) === "lambertian";
   return [
     ...textureFields(app, pointer),
     {kind: "group", label: "Light"},
     lit && surface,
-    ...spectrumFields(app, `${pointer}/spectrum`, {materials: app.store.get(`${pointer}/texture/type`) === "materials"}),
+    ...spectrumFields(app, `${pointer}/spectrum`, {
+      materials: app.store.get(`${pointer}/texture/type`) === "materials",
+    }),
     {...kIntensity, pointer: `${pointer}/intensity`},
     {...kOpacity, pointer: `${pointer}/opacity`},
     app.store.get(`${pointer}/blink`) && {kind: "json", pointer: `${pointer}/blink`, label: "Blink"},

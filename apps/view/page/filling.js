@@ -5,7 +5,9 @@ import {ApiError, isLost} from "./api.js";
 /** Asks api/look after each change that is not part of a drag; the last answer counts. */
 export function fill(app) {
   const {store} = app;
-  let last = 0, asked = false, unanswered = false;
+  let last = 0,
+    asked = false,
+    unanswered = false;
   const ask = async () => {
     asked = false;
     const number = ++last;

@@ -17,7 +17,14 @@ import {find, same} from "./look_patch.js";
  * "node": `make()` gives an element, which is made anew when `key` changes.
  */
 
-const kWidgets = {number: numberControl, switch: switchControl, select: selectControl, color: colorControl, text: textControl, json: jsonControl};
+const kWidgets = {
+  number: numberControl,
+  switch: switchControl,
+  select: selectControl,
+  color: colorControl,
+  text: textControl,
+  json: jsonControl,
+};
 
 const isColor = (value) => Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
 const kPlain = {
@@ -33,7 +40,7 @@ export class Form {
   #app;
   #body;
   #describe;
-  #panel;      // around it
+  #panel; // around it
   #stale = false;
   #planned = 0;
   #shown = []; // {field, elements}
@@ -62,8 +69,11 @@ export class Form {
     if (Object.keys(this.#app.store.full).length === 0) return;
     this.#stale = this.#panel !== null && !this.#panel.open;
     if (this.#stale) return;
-    const fields = this.#describe().filter(Boolean).map((field) => this.#asStored(field));
-    const alike = fields.length === this.#shown.length && fields.every((field, at) => unchanged(field, this.#shown[at].field));
+    const fields = this.#describe()
+      .filter(Boolean)
+      .map((field) => this.#asStored(field));
+    const alike =
+      fields.length === this.#shown.length && fields.every((field, at) => unchanged(field, this.#shown[at].field));
     if (!alike) this.#rebuild(fields);
     fields.forEach((field, at) => this.#refresh(this.#shown[at], field));
   }
@@ -71,7 +81,7 @@ export class Form {
   /** With its value; values that are not plain (keyframes) are shown as JSON. */
   #asStored(field) {
     if (field.kind === "group" || field.kind === "node") return field;
-    const value = "value" in field ? field.value : this.#app.store.get(field.pointer) ?? field.fallback;
+    const value = "value" in field ? field.value : (this.#app.store.get(field.pointer) ?? field.fallback);
     const plain = kPlain[field.kind];
     return plain && !plain(value, field) ? {...field, kind: "json", value, put: undefined} : {...field, value};
   }
@@ -119,8 +129,10 @@ export class Form {
     const {store} = this.#app;
     const put = field.put ?? ((next, live) => store.set(field.pointer, next, {live}));
     const element = widget({
-      ...options, value, pointer,
-      reset: field.reset === false ? undefined : field.reset ?? (() => store.set(field.pointer, this.#origin(field))),
+      ...options,
+      value,
+      pointer,
+      reset: field.reset === false ? undefined : (field.reset ?? (() => store.set(field.pointer, this.#origin(field)))),
       onInput: (next) => put(whole(next), true),
       onChange: (next) => put(whole(next), false),
     });
@@ -148,7 +160,8 @@ const kIgnored = new Set(["value", "put", "make", "reset", "fallback", "begin"])
 
 /** But for the value. */
 function unchanged(a, b) {
-  const rest = (field) => Object.fromEntries(Object.entries(field).filter(([name, value]) => !kIgnored.has(name) && value !== undefined));
+  const rest = (field) =>
+    Object.fromEntries(Object.entries(field).filter(([name, value]) => !kIgnored.has(name) && value !== undefined));
   return same(rest(a), rest(b)) && (a.kind !== "vector" || a.value.length === b.value.length);
 }
 

@@ -7,7 +7,8 @@ const toBase64Url = (bytes) => {
   for (let at = 0; at < bytes.length; at += 0x8000) text += String.fromCharCode(...bytes.subarray(at, at + 0x8000));
   return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 };
-const fromBase64Url = (text) => Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
+const fromBase64Url = (text) =>
+  Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
 
 /** @param {object} patch @returns {Promise<string>} */
 export async function packed(patch) {
@@ -18,7 +19,8 @@ export async function packed(patch) {
 /** @param {string} text @returns {Promise<object>} */
 export async function unpacked(text) {
   const stream = new Blob([fromBase64Url(text)]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  const reader = stream.getReader(), parts = [];
+  const reader = stream.getReader(),
+    parts = [];
   let size = 0;
   for (let part = await reader.read(); !part.done; part = await reader.read()) {
     size += part.value.length;

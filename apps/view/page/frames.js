@@ -4,8 +4,8 @@
 import {ApiError, isLost} from "./api.js";
 import {Link} from "./link.js";
 
-const kSmooth = 33;      // ms from a slider to the frame that shows it
-const kAgain = 2000;     // ms until a server that does not answer is asked again
+const kSmooth = 33; // ms from a slider to the frame that shows it
+const kAgain = 2000; // ms until a server that does not answer is asked again
 
 /** Events: "shown" {frame, scale, ms}, "fault" {error}. */
 export class Frames extends EventTarget {
@@ -15,10 +15,10 @@ export class Frames extends EventTarget {
   #sent = 0;
   #shown = 0;
   #flying = new Map(); // number of the request -> when it was sent
-  #waiting = [];       // who waits for idle()
+  #waiting = []; // who waits for idle()
   #timer = 0;
-  #half = 0;           // ms a frame of half the size takes, 0: not known
-  #known = false;      // whether the link was measured
+  #half = 0; // ms a frame of half the size takes, 0: not known
+  #known = false; // whether the link was measured
 
   constructor(app) {
     super();
@@ -81,7 +81,9 @@ export class Frames extends EventTarget {
 
   async #ask() {
     this.#wanted = false;
-    const number = ++this.#sent, begin = performance.now(), scale = this.#scale();
+    const number = ++this.#sent,
+      begin = performance.now(),
+      scale = this.#scale();
     this.#flying.set(number, begin);
     const {data, frame} = this.#app.view;
     const format = this.link.choose({lossless: scale === 1, pixels: this.#app.picture.pixels / scale ** 2});

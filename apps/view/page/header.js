@@ -13,8 +13,11 @@ export function setup(app) {
     $("dataset-name").title = app.dataset.path;
     document.title = `${app.dataset.name} – Nullcone`;
     const {width, height, metric, objects} = app.dataset;
-    app.picture.element.setAttribute("aria-label", `Picture of ${app.dataset.name}: ${width} by ${height} pixels, ` +
-      `${metric?.name ?? metric ?? "spacetime"}, ${objects.map((object) => object.name).join(", ")}`);
+    app.picture.element.setAttribute(
+      "aria-label",
+      `Picture of ${app.dataset.name}: ${width} by ${height} pixels, ` +
+        `${metric?.name ?? metric ?? "spacetime"}, ${objects.map((object) => object.name).join(", ")}`,
+    );
   };
   app.addEventListener("dataset", name);
   name();
@@ -29,7 +32,11 @@ function chooseDataset(app) {
   const {length} = app.state.datasets;
   if (length < 2 || length > kFew) return; // more are frames, which the time line shows
   const options = app.state.datasets.map(({name}, at) => make("option", {value: String(at)}, name));
-  const select = make("select", {"aria-label": "Dataset", change: () => app.show({data: Number(select.value)})}, ...options);
+  const select = make(
+    "select",
+    {"aria-label": "Dataset", change: () => app.show({data: Number(select.value)})},
+    ...options,
+  );
   select.value = String(app.view.data);
   app.addEventListener("view", () => (select.value = String(app.view.data)));
   $("header-slot").append(select);
@@ -48,7 +55,8 @@ function history(app) {
 }
 
 function transport(app) {
-  const {frames} = app, select = $("format");
+  const {frames} = app,
+    select = $("format");
   for (const option of [...select.options])
     if (option.value !== "" && !app.state.formats.includes(option.value)) option.remove();
   const title = () => ($("transport").title = `Pictures come as ${frames.link.reason}.`);
@@ -69,7 +77,9 @@ function showNotes(notes) {
   $("notes").hidden = notes.length === 0;
   if (notes.length === 0) return;
   $("notes").querySelector("summary").textContent = notes.length === 1 ? "1 note" : `${notes.length} notes`;
-  $("notes").querySelector("ul").replaceChildren(...notes.map((note) => make("li", {}, note)));
+  $("notes")
+    .querySelector("ul")
+    .replaceChildren(...notes.map((note) => make("li", {}, note)));
 }
 
 function zoom(app) {

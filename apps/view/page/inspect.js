@@ -103,7 +103,8 @@ class Inspection {
 
   #sentence() {
     const {pixel, hits} = this.#shown;
-    const seen = hits.length === 0 ? "nothing" : hits.slice(0, 3).map((hit) => `${hit.object}, g ${text(hit.shift)}`).join("; ");
+    const first = hits.filter((hit, i) => hits.findIndex(({object}) => object === hit.object) === i);
+    const seen = hits.length === 0 ? "nothing" : first.slice(0, 3).map((hit) => `${hit.object}, g ${text(hit.shift)}`).join("; ");
     return `Pixel ${pixel.join(", ")}: ${seen}.`;
   }
 

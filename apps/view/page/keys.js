@@ -18,7 +18,8 @@ const kKeys = [
   [["?"], "this list"],
 ];
 
-const typing = (target) => target.closest?.("input:not([type=range], [type=checkbox]), textarea, select, [contenteditable]");
+const typing = (target) =>
+  target.closest?.("input:not([type=range], [type=checkbox]), textarea, select, [contenteditable]");
 
 /** `app.keys.add(["N"], "next image", handler?)`: other modules list theirs; with a handler for a single key it is called. */
 export function setup(app) {
@@ -34,14 +35,19 @@ export function setup(app) {
     "+": () => picture.zoomBy(Math.SQRT2),
     "=": () => picture.zoomBy(Math.SQRT2),
     "-": () => picture.zoomBy(Math.SQRT1_2),
-    "0": () => picture.fit(),
-    "1": () => picture.zoomBy(1 / picture.zoom),
+    0: () => picture.fit(),
+    1: () => picture.zoomBy(1 / picture.zoom),
     "?": () => help(),
   };
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
     const key = event.key.toLowerCase();
-    const action = event.ctrlKey || event.metaKey ? chord(event, key) : typing(event.target) || event.altKey ? null : plain[key] ?? own.get(key);
+    const action =
+      event.ctrlKey || event.metaKey
+        ? chord(event, key)
+        : typing(event.target) || event.altKey
+          ? null
+          : (plain[key] ?? own.get(key));
     if (!action) return;
     event.preventDefault();
     action(event);
@@ -58,11 +64,23 @@ export function setup(app) {
 
 function help() {
   const dialog = document.getElementById("help");
-  const rows = kKeys.map(([names, what]) => make("tr", {}, make("th", {scope: "row"}, ...names.flatMap((name, at) => [at > 0 ? " " : "", make("kbd", {}, name)])), make("td", {}, what)));
+  const rows = kKeys.map(([names, what]) =>
+    make(
+      "tr",
+      {},
+      make("th", {scope: "row"}, ...names.flatMap((name, at) => [at > 0 ? " " : "", make("kbd", {}, name)])),
+      make("td", {}, what),
+    ),
+  );
   dialog.replaceChildren(
     make("h2", {id: "help-title"}, "Keys"),
     make("table", {}, make("tbody", {}, ...rows)),
-    make("p", {class: "hint"}, "Drag pans the picture, the wheel and two fingers zoom it; a click selects the object. Drop a picture on an object to put it there as its texture."),
-    make("form", {method: "dialog", class: "actions"}, make("button", {class: "primary"}, "Close")));
+    make(
+      "p",
+      {class: "hint"},
+      "Drag pans the picture, the wheel and two fingers zoom it; a click selects the object. Drop a picture on an object to put it there as its texture.",
+    ),
+    make("form", {method: "dialog", class: "actions"}, make("button", {class: "primary"}, "Close")),
+  );
   dialog.showModal();
 }

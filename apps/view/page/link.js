@@ -8,12 +8,14 @@ const kFormats = {
   jpeg: {bytes: 0.3, encode: 6, decode: 8, lossless: false},
   webp: {bytes: 0.15, encode: 60, decode: 12, lossless: false},
 };
-const kLocal = 4e5, kRemote = 5e3; // bytes/ms before anything was measured
-const kTelling = 5e4;              // bytes from which an answer tells the link's speed
-const kLeast = 2e3, kSlow = 10;    // bytes, ms
-const kTellingPixels = 0.05;       // million pixels from which one tells what formats cost
-const kClock = 0.2;                // ms that clocks of browsers tell apart
-const kHold = 0.85;                // another format must be that much faster
+const kLocal = 4e5,
+  kRemote = 5e3; // bytes/ms before anything was measured
+const kTelling = 5e4; // bytes from which an answer tells the link's speed
+const kLeast = 2e3,
+  kSlow = 10; // bytes, ms
+const kTellingPixels = 0.05; // million pixels from which one tells what formats cost
+const kClock = 0.2; // ms that clocks of browsers tell apart
+const kHold = 0.85; // another format must be that much faster
 
 const mean = (before, now, share = 0.3) => (1 - share) * before + share * now;
 
@@ -22,11 +24,11 @@ export class Link {
   constructor(host) {
     const local = /^(localhost|127\..*|\[::1\])$/.test(host);
     this.rate = local ? kLocal : kRemote; // bytes/ms
-    this.serverTime = 0;                  // ms of work a frame
-    this.pinned = null;                   // the user's own choice
+    this.serverTime = 0; // ms of work a frame
+    this.pinned = null; // the user's own choice
     this.formats = structuredClone(kFormats);
     this.last = {true: null, false: null}; // by lossless
-    this.telling = false;                 // whether the rate was measured
+    this.telling = false; // whether the rate was measured
     this.#observe();
   }
 
@@ -83,7 +85,8 @@ export class Link {
   get reason() {
     const rate = this.telling ? `${speed(this.rate)} measured` : "a rate that is still to be measured";
     if (this.pinned !== null) return `${this.pinned} was chosen by hand; ${rate}`;
-    const still = this.last[true] ?? "raw", moving = this.last[false];
+    const still = this.last[true] ?? "raw",
+      moving = this.last[false];
     const both = moving === null || moving === still ? still : `${moving} while dragging, ${still} (lossless) after`;
     return `${both}: the fastest at ${rate}`;
   }

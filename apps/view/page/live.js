@@ -7,21 +7,27 @@ import {LiveHand} from "./live_hand.js";
 import {liveControls} from "./live_controls.js";
 import {sceneNumbers} from "./scene_numbers.js";
 
+const kSettled = 200; // ms after which another dataset stays: while a sequence plays no controls are made
 const kModes = [["pan", "pan the picture"], ["look", "look round"], ["object", "move the object under the pointer"]];
 
 export function setup(app) {
   const {body} = app.panel("live", "Move", {open: false});
-  let live = null;
+  let live = null, timer = 0;
   const begin = () => {
-    live?.leave();
-    live = app.live = null;
+    body.inert = false;
     body.replaceChildren();
     const {possible, why} = app.dataset.live ?? {possible: false, why: "the server does not trace"};
     if (possible) live = app.live = new Live(app, body);
     else body.append(html("p", {class: "hint"}, `The scene cannot be moved: ${why}.`));
     app.dispatchEvent(new CustomEvent("live"));
   };
-  app.addEventListener("dataset", begin);
+  app.addEventListener("dataset", () => {
+    live?.leave();
+    live = app.live = null;
+    body.inert = true;
+    clearTimeout(timer);
+    timer = setTimeout(begin, kSettled);
+  });
   app.keys?.add(["W", "S", "A", "D", "R", "F"], "on the picture, once a scene is moved: forwards, back, left, right, up, down");
   begin();
 }

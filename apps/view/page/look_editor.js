@@ -9,18 +9,28 @@ export function setup(app) {
   const {store} = app;
   const {element, body} = app.panel("look", "Look as JSON");
   const fault = make("p", {class: "fault", id: "look-fault", role: "alert", hidden: true});
-  const area = make("textarea", {rows: 18, spellcheck: "false", autocomplete: "off", "aria-label": "Look as JSON", "aria-describedby": "look-fault"});
+  const area = make("textarea", {
+    rows: 18,
+    spellcheck: "false",
+    autocomplete: "off",
+    "aria-label": "Look as JSON",
+    "aria-describedby": "look-fault",
+  });
   const full = make("input", {type: "checkbox"});
   const apply = make("button", {type: "button", class: "primary", click: () => take()}, "Apply");
   const revert = make("button", {type: "button", click: () => show()}, "Revert");
   const begin = make("button", {type: "button", click: () => store.replace(store.base)}, "As to begin with");
-  body.append(area, fault, make("div", {class: "row"}, apply, revert, begin, make("label", {}, full, " with defaults")),
-    make("p", {class: "hint"}, "Ctrl+Enter applies it. The server checks every entry."));
+  body.append(
+    area,
+    fault,
+    make("div", {class: "row"}, apply, revert, begin, make("label", {}, full, " with defaults")),
+    make("p", {class: "hint"}, "Ctrl+Enter applies it. The server checks every entry."),
+  );
 
   const say = (message) => {
     fault.textContent = message;
     fault.hidden = message === "";
-    area.toggleAttribute("aria-invalid", message !== "");
+    area.setAttribute("aria-invalid", String(message !== ""));
   };
   const show = () => {
     area.value = text(full.checked ? store.full : store.look);

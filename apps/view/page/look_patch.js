@@ -6,7 +6,10 @@ export const isObject = (value) => typeof value === "object" && value !== null &
 
 /** @param {string} pointer @returns {string[]} */
 export function steps(pointer) {
-  return pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
+  return pointer
+    .split("/")
+    .slice(1)
+    .map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
 }
 
 /** @param {string[]} keys */

@@ -28,8 +28,23 @@ import * as steer from "./steer.js";
 
 // In the order of their panels.
 const kModules = [
-  header, keys, objects, effects, lights, develop, textures, histogram, inspect, images, channels, compare, live, steer,
-  timeline, share, raw,
+  header,
+  keys,
+  objects,
+  effects,
+  lights,
+  develop,
+  textures,
+  histogram,
+  inspect,
+  images,
+  channels,
+  compare,
+  live,
+  steer,
+  timeline,
+  share,
+  raw,
 ];
 
 const kRemembered = 12000; // ms
@@ -40,7 +55,7 @@ const kRemembered = 12000; // ms
  */
 class App extends EventTarget {
   api = new Api();
-  state = null;   // answer of api/state
+  state = null; // answer of api/state
   dataset = null; // answer of api/dataset
   view = {data: 0, frame: 0};
   /** Name of the object that the panel shows. */
@@ -58,7 +73,12 @@ class App extends EventTarget {
   /** A collapsible section of the side bar. @returns {{element: HTMLDetailsElement, body: HTMLElement}} */
   panel(id, title, {open = false} = {}) {
     const body = make("div", {class: "body"});
-    const element = make("details", {class: "panel", id: `panel-${id}`, open}, make("summary", {}, make("h2", {}, title)), body);
+    const element = make(
+      "details",
+      {class: "panel", id: `panel-${id}`, open},
+      make("summary", {}, make("h2", {}, title)),
+      body,
+    );
     this.#panels.append(element);
     return {element, body};
   }
@@ -79,7 +99,7 @@ class App extends EventTarget {
 
   /** Shows another dataset, frame or both. Looks go along between datasets with the same objects and lamps. */
   async show({data = this.view.data, frame}) {
-    frame ??= data === this.view.data ? this.view.frame : this.state.datasets[data]?.frame ?? 0;
+    frame ??= data === this.view.data ? this.view.frame : (this.state.datasets[data]?.frame ?? 0);
     if (data === this.view.data && frame === this.view.frame) return;
     const other = typeof data === "number" && data !== this.view.data ? await this.describe(data) : this.dataset;
     const before = this.dataset;

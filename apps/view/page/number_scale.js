@@ -13,7 +13,10 @@ export function numberText(value, digits = 6) {
 
 /** What was typed; NaN for what is no number. Decimal commas are taken, too. */
 export function typedNumber(text) {
-  const trimmed = text.trim().replace("\u2212", "-").replace(/[\u00a0\u202f\u2009 ](?=\d)/g, "");
+  const trimmed = text
+    .trim()
+    .replace("\u2212", "-")
+    .replace(/[\u00a0\u202f\u2009 ](?=\d)/g, "");
   const dotted = /^[^.]*,[^.,]*$/.test(trimmed) ? trimmed.replace(",", ".") : trimmed;
   return dotted === "" ? NaN : Number(dotted);
 }

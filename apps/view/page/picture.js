@@ -3,8 +3,8 @@
 
 import {Pointing} from "./pointing.js";
 
-const kClosest = 64;   // screen pixels a pixel of the picture
-const kOutlined = 8;   // from this zoom on the pixel under the pointer is outlined
+const kClosest = 64; // screen pixels a pixel of the picture
+const kOutlined = 8; // from this zoom on the pixel under the pointer is outlined
 const kLargestFit = 8;
 const kSvg = "http://www.w3.org/2000/svg";
 
@@ -75,7 +75,8 @@ export class Picture extends EventTarget {
 
   /** Coarse frames (scale 2 or 4) take the same place. After one of scale 1 the canvas has exactly its pixels. */
   draw(frame) {
-    const begin = performance.now(), scale = frame.scale ?? 1;
+    const begin = performance.now(),
+      scale = frame.scale ?? 1;
     const fits = Math.ceil(this.width / scale) === frame.width && Math.ceil(this.height / scale) === frame.height;
     if (!fits) this.resize(frame.width * scale, frame.height * scale);
     paint(this.#context, frame);

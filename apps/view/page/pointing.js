@@ -1,6 +1,6 @@
 // Pointer, wheel, touch and keys on the picture.
 
-const kClick = 4;    // px a click may move
+const kClick = 4; // px a click may move
 const kWheel = 0.0015;
 
 /** Turns what the hand does on `picture` into its pans, zooms and events. */
@@ -40,7 +40,8 @@ export class Pointing {
     const before = this.#pointers.get(event.pointerId);
     if (before === undefined) return this.#tell(this.#picture.at(event.clientX, event.clientY));
     const now = {x: event.clientX, y: event.clientY};
-    const dx = now.x - before.x, dy = now.y - before.y;
+    const dx = now.x - before.x,
+      dy = now.y - before.y;
     this.#moved += Math.hypot(dx, dy);
     if (this.#pointers.size === 1) {
       if (this.#handler) this.#handler("move", event, {dx, dy});
@@ -106,7 +107,8 @@ export class Pointing {
     const {pixel, width, height} = this.#picture;
     const known = pixel.x >= 0 && pixel.y >= 0 && pixel.x < width && pixel.y < height && (pixel.x > 0 || pixel.y > 0);
     const from = known ? pixel : {x: width >> 1, y: height >> 1};
-    const x = Math.min(Math.max(from.x + dx, 0), width - 1), y = Math.min(Math.max(from.y + dy, 0), height - 1);
+    const x = Math.min(Math.max(from.x + dx, 0), width - 1),
+      y = Math.min(Math.max(from.y + dy, 0), height - 1);
     this.#picture.reveal(x, y);
     this.#tell({x, y, inside: true, cursor: true});
   }

@@ -97,13 +97,13 @@ export function brakeStep(u, a, tau) {
   if (needed > tau) return hyperbolicStep(u, n, a, tau);
   const last = hyperbolicStep(u, n, a, needed);
   const rest = tau - needed;
-  return { u: [1, 0, 0, 0], displacement: sum4(last.displacement, [rest, 0, 0, 0]), rotation: last.rotation };
+  return {u: [1, 0, 0, 0], displacement: sum4(last.displacement, [rest, 0, 0, 0]), rotation: last.rotation};
 }
 
 const sum4 = (a, b) => a.map((x, i) => x + b[i]);
 
 /** Camera axes as scenes have them: azimuth from e1 to e2, elevation towards e3, then roll. Degrees. */
-export function cameraAxes({ azimuth, elevation, roll }) {
+export function cameraAxes({azimuth, elevation, roll}) {
   const [a, e, r] = [azimuth, elevation, roll].map((x) => (x * Math.PI) / 180);
   const forward = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
   const level = [-Math.sin(a), Math.cos(a), 0];
@@ -115,12 +115,12 @@ export function cameraAxes({ azimuth, elevation, roll }) {
   };
 }
 
-export function cameraAngles({ forward, left, up }) {
+export function cameraAngles({forward, left, up}) {
   const degrees = 180 / Math.PI;
   const flat = Math.hypot(forward[0], forward[1]);
   const elevation = Math.atan2(forward[2], flat) * degrees;
   // Straight up or down azimuth and roll are one: all of it is azimuth.
-  if (flat < 1e-9) return { azimuth: Math.atan2(-left[0], left[1]) * degrees, elevation, roll: 0 };
+  if (flat < 1e-9) return {azimuth: Math.atan2(-left[0], left[1]) * degrees, elevation, roll: 0};
   return {
     azimuth: Math.atan2(forward[1], forward[0]) * degrees,
     elevation,
@@ -130,6 +130,6 @@ export function cameraAngles({ forward, left, up }) {
 
 /** The angles of a camera after the rotation r of its axes. */
 export function turnedCamera(angles, r) {
-  const { forward, left, up } = cameraAxes(angles);
-  return cameraAngles({ forward: rotated(r, forward), left: rotated(r, left), up: rotated(r, up) });
+  const {forward, left, up} = cameraAxes(angles);
+  return cameraAngles({forward: rotated(r, forward), left: rotated(r, left), up: rotated(r, up)});
 }

@@ -6,9 +6,14 @@ import {commandLine, filesOf} from "./shell.js";
 import {make} from "./widgets.js";
 
 const kPictures = [
-  {value: "png 8", text: "PNG, 8 bit"}, {value: "png 16", text: "PNG, 16 bit"}, {value: "jpg 8", text: "JPEG"},
-  {value: "tif 8", text: "TIFF, 8 bit"}, {value: "tif 16", text: "TIFF, 16 bit"}, {value: "tif 32", text: "TIFF, float"},
-  {value: "exr 32", text: "OpenEXR, float"}, {value: "exr 16", text: "OpenEXR, half"},
+  {value: "png 8", text: "PNG, 8 bit"},
+  {value: "png 16", text: "PNG, 16 bit"},
+  {value: "jpg 8", text: "JPEG"},
+  {value: "tif 8", text: "TIFF, 8 bit"},
+  {value: "tif 16", text: "TIFF, 16 bit"},
+  {value: "tif 32", text: "TIFF, float"},
+  {value: "exr 32", text: "OpenEXR, float"},
+  {value: "exr 16", text: "OpenEXR, half"},
 ];
 
 /** `app.share`: saveLook(), savePicture(format, bits), commandLine(), address(), download(blob, name), copy(text, what). */
@@ -18,7 +23,8 @@ export function setup(app) {
     savePicture: (format, bits) => savePicture(app, format, bits),
     commandLine: (picture) => command(app, picture),
     address: () => address(app),
-    download, copy: (text, what) => copy(app, text, what),
+    download,
+    copy: (text, what) => copy(app, text, what),
   };
   keepAddress(app);
   menu(app);
@@ -76,7 +82,9 @@ function saveLook(app) {
 /** Relative names are looked for beside the file that has them. */
 function fileNote(app) {
   const files = filesOf(app.store.look).filter((file) => !file.startsWith("/"));
-  return files.length === 0 ? "" : `It names ${files.join(", ")}: look.json looks for ${files.length === 1 ? "it" : "them"} beside itself.`;
+  return files.length === 0
+    ? ""
+    : `It names ${files.join(", ")}: look.json looks for ${files.length === 1 ? "it" : "them"} beside itself.`;
 }
 
 async function savePicture(app, format, bits) {
@@ -96,7 +104,15 @@ async function savePicture(app, format, bits) {
 
 function command(app, picture = {}) {
   const {state, dataset, store, view} = app;
-  return commandLine({path: dataset.path, lookFile: state.look_file, given: state.settings, base: store.base, look: store.look, frame: view.frame, ...picture});
+  return commandLine({
+    path: dataset.path,
+    lookFile: state.look_file,
+    given: state.settings,
+    base: store.base,
+    look: store.look,
+    frame: view.frame,
+    ...picture,
+  });
 }
 
 async function copy(app, text, what) {
@@ -113,14 +129,21 @@ async function copy(app, text, what) {
 // --- Menu ---
 
 function menu(app) {
-  const details = document.getElementById("save-menu"), items = document.getElementById("save-items");
-  const format = make("select", {"aria-label": "Kind of picture"}, ...kPictures.map(({value, text}) => make("option", {value}, text)));
+  const details = document.getElementById("save-menu"),
+    items = document.getElementById("save-items");
+  const format = make(
+    "select",
+    {"aria-label": "Kind of picture"},
+    ...kPictures.map(({value, text}) => make("option", {value}, text)),
+  );
   const chosen = () => {
     const [kind, bits] = format.value.split(" ");
     return {kind, bits};
   };
-  const line = field("Command line"), url = field("Address");
-  const lookNote = make("p", {class: "hint"}), lineNote = make("p", {class: "hint"});
+  const line = field("Command line"),
+    url = field("Address");
+  const lookNote = make("p", {class: "hint"}),
+    lineNote = make("p", {class: "hint"});
   const show = async () => {
     if (!details.open) return;
     const {kind, bits} = chosen();
@@ -137,21 +160,40 @@ function menu(app) {
   const button = (text, click, title = "") => make("button", {type: "button", click, title}, text);
   items.append(
     make("h2", {}, "Picture, as nullcone-postrender writes it"),
-    make("div", {class: "row"}, format, button("Save picture", () => savePicture(app, chosen().kind, chosen().bits))),
-    make("h2", {}, "Look"), make("div", {class: "row"}, button("Save look.json", () => saveLook(app), "Ctrl+S")), lookNote,
-    make("h2", {}, "Command line that makes this picture"), line, lineNote, make("div", {class: "row"}, button("Copy command line", copyFrom(line, "Command line"))),
-    make("h2", {}, "Address of this view"), url, make("p", {class: "hint"}, "For a colleague whose nullcone-view shows the same dataset."),
-    make("div", {class: "row"}, button("Copy address", copyFrom(url, "Address"))));
+    make(
+      "div",
+      {class: "row"},
+      format,
+      button("Save picture", () => savePicture(app, chosen().kind, chosen().bits)),
+    ),
+    make("h2", {}, "Look"),
+    make(
+      "div",
+      {class: "row"},
+      button("Save look.json", () => saveLook(app), "Ctrl+S"),
+    ),
+    lookNote,
+    make("h2", {}, "Command line that makes this picture"),
+    line,
+    lineNote,
+    make("div", {class: "row"}, button("Copy command line", copyFrom(line, "Command line"))),
+    make("h2", {}, "Address of this view"),
+    url,
+    make("p", {class: "hint"}, "For a colleague whose nullcone-view shows the same dataset."),
+    make("div", {class: "row"}, button("Copy address", copyFrom(url, "Address"))),
+  );
   details.addEventListener("toggle", show);
   format.addEventListener("change", show);
   app.store.addEventListener("history", show);
   closeOutside(details);
 }
 
-const field = (label) => make("textarea", {readOnly: true, rows: 3, "aria-label": label, class: "code", spellcheck: "false"});
+const field = (label) =>
+  make("textarea", {readOnly: true, rows: 3, "aria-label": label, class: "code", spellcheck: "false"});
 
 function noteOnFiles(app) {
-  if (app.view.data === "live") return "The scene has changed since it was traced: save it as a dataset first, and put that in the place of the path.";
+  if (app.view.data === "live")
+    return "The scene has changed since it was traced: save it as a dataset first, and put that in the place of the path.";
   const before = new Set(filesOf(app.store.base));
   const files = filesOf(app.store.look).filter((file) => !before.has(file));
   const place = app.state.look_file ? "the file of --look" : "the dataset";

@@ -20,9 +20,9 @@ export class Store extends EventTarget {
   constructor(base) {
     super();
     this.base = base;
-    this.full = {};   // with all defaults, of the last look that is right
-    this.words = {};  // what texts may be, by pointer
-    this.keys = {};   // what objects may hold, by pointer
+    this.full = {}; // with all defaults, of the last look that is right
+    this.words = {}; // what texts may be, by pointer
+    this.keys = {}; // what objects may hold, by pointer
     this.#look = base;
     this.#history = [base];
   }

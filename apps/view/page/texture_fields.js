@@ -5,13 +5,29 @@ import {putTexture} from "./textures.js";
 import {make} from "./widgets.js";
 
 const kTypes = ["color", "checkerboard", "image", "materials"];
-const kAngles = {kind: "vector", label: "Rotation", labels: ["Rotate x", "Rotate y", "Rotate z"], unit: "°", min: -180, max: 180, step: 0.5,
-  least: -1e9, most: 1e9, fallback: [0, 0, 0]};
+const kAngles = {
+  kind: "vector",
+  label: "Rotation",
+  labels: ["Rotate x", "Rotate y", "Rotate z"],
+  unit: "°",
+  min: -180,
+  max: 180,
+  step: 0.5,
+  least: -1e9,
+  most: 1e9,
+  fallback: [0, 0, 0],
+};
 
 /** What a type begins with. */
 const kBegin = {
   color: {rgb: [0.8, 0.8, 0.8]},
-  checkerboard: {counts: [24, 12], colors: [[0.95, 0.95, 0.92], [0.12, 0.25, 0.5]]},
+  checkerboard: {
+    counts: [24, 12],
+    colors: [
+      [0.95, 0.95, 0.92],
+      [0.12, 0.25, 0.5],
+    ],
+  },
 };
 const kGradient = {along: "u", from: [1, 0.9, 0], to: [0.1, 0.2, 1], dark: 0.3};
 
@@ -23,8 +39,16 @@ export function textureFields(app, pointer) {
   const put = (next) => choose(app, pointer, texture, next);
   const types = store.words[`${texture}/type`] ?? kTypes;
   const select = {
-    kind: "select", pointer: `${texture}/type`, label: "Texture", value: type, put, reset: () => store.reset(texture),
-    options: [{value: "none", text: "none (flat colour)"}, ...types.map((value) => ({value, text: value.replaceAll("_", " ")}))],
+    kind: "select",
+    pointer: `${texture}/type`,
+    label: "Texture",
+    value: type,
+    put,
+    reset: () => store.reset(texture),
+    options: [
+      {value: "none", text: "none (flat colour)"},
+      ...types.map((value) => ({value, text: value.replaceAll("_", " ")})),
+    ],
   };
   return [select, ...(kFields[type]?.(app, pointer, texture) ?? []), fileField(app, pointer, texture, type)];
 }
@@ -41,19 +65,46 @@ function choose(app, pointer, texture, type) {
 }
 
 const placement = (texture, whole) => [
-  {kind: "vector", pointer: `${texture}/offset`, label: "Offset", labels: ["Offset u", "Offset v"], min: -1, max: 1, step: 0.005, least: -1e4, most: 1e4,
-    fallback: [0, 0]},
-  {kind: "vector", pointer: `${texture}/scale`, label: "Scale", labels: ["Scale u", "Scale v"], min: -4, max: 4, step: 0.02, least: -1e4, most: 1e4,
-    fallback: [1, 1]},
+  {
+    kind: "vector",
+    pointer: `${texture}/offset`,
+    label: "Offset",
+    labels: ["Offset u", "Offset v"],
+    min: -1,
+    max: 1,
+    step: 0.005,
+    least: -1e4,
+    most: 1e4,
+    fallback: [0, 0],
+  },
+  {
+    kind: "vector",
+    pointer: `${texture}/scale`,
+    label: "Scale",
+    labels: ["Scale u", "Scale v"],
+    min: -4,
+    max: 4,
+    step: 0.02,
+    least: -1e4,
+    most: 1e4,
+    fallback: [1, 1],
+  },
   whole && {...kAngles, pointer: `${texture}/rotate_deg`},
 ];
 
-const filter = (texture) =>
-  ({kind: "select", pointer: `${texture}/filter`, label: "Filter", options: ["mipmap", "anisotropic", "bilinear"], fallback: "mipmap"});
+const filter = (texture) => ({
+  kind: "select",
+  pointer: `${texture}/filter`,
+  label: "Filter",
+  options: ["mipmap", "anisotropic", "bilinear"],
+  fallback: "mipmap",
+});
 
 /** @type {Object<string, function(object, string, string): import("./form.js").Field[]>} */
 const kFields = {
-  color: (app, pointer, texture) => [{kind: "color", pointer: `${texture}/rgb`, label: "Colour", begin: kBegin.color.rgb}],
+  color: (app, pointer, texture) => [
+    {kind: "color", pointer: `${texture}/rgb`, label: "Colour", begin: kBegin.color.rgb},
+  ],
   checkerboard: (app, pointer, texture) => [...board(app, texture), ...placement(texture, isRound(app, pointer))],
   image: (app, pointer, texture) => [
     filter(texture),
@@ -67,8 +118,10 @@ const kFields = {
 /** Whether rotations make sense. */
 function isRound(app, pointer) {
   const name = pointer.split("/").at(-1);
-  return app.dataset.objects.find((object) => object.name === name)?.shape === "sphere" ||
-    app.store.get(`${pointer}/texture/rotate_deg`) !== undefined;
+  return (
+    app.dataset.objects.find((object) => object.name === name)?.shape === "sphere" ||
+    app.store.get(`${pointer}/texture/rotate_deg`) !== undefined
+  );
 }
 
 function board({store}, texture) {
@@ -80,17 +133,39 @@ function board({store}, texture) {
     store.set(texture, {...rest, ...structuredClone(other)});
   };
   return [
-    {kind: "vector", pointer: `${texture}/counts`, label: "Squares", labels: ["Squares u", "Squares v"], begin: kBegin.checkerboard.counts, ...squares},
-    {kind: "select", label: "Colours", value: graded ? "gradient" : "two colours", options: ["two colours", "gradient"], put: pattern, reset: false},
+    {
+      kind: "vector",
+      pointer: `${texture}/counts`,
+      label: "Squares",
+      labels: ["Squares u", "Squares v"],
+      begin: kBegin.checkerboard.counts,
+      ...squares,
+    },
+    {
+      kind: "select",
+      label: "Colours",
+      value: graded ? "gradient" : "two colours",
+      options: ["two colours", "gradient"],
+      put: pattern,
+      reset: false,
+    },
     ...(graded ? gradient(`${texture}/gradient`) : twoColors(store, `${texture}/colors`)),
   ];
 }
 
 function twoColors(store, pointer) {
   return [0, 1].map((at) => ({
-    kind: "color", pointer: `${pointer}/${at}`, label: at === 0 ? "First" : "Second", begin: kBegin.checkerboard.colors[at],
+    kind: "color",
+    pointer: `${pointer}/${at}`,
+    label: at === 0 ? "First" : "Second",
+    begin: kBegin.checkerboard.colors[at],
     // A list as a whole: the look may not have one of its own yet.
-    put: (rgb, live) => store.set(pointer, store.get(pointer).map((color, i) => (i === at ? rgb : color)), {live}),
+    put: (rgb, live) =>
+      store.set(
+        pointer,
+        store.get(pointer).map((color, i) => (i === at ? rgb : color)),
+        {live},
+      ),
   }));
 }
 
@@ -98,7 +173,17 @@ const gradient = (pointer) => [
   {kind: "select", pointer: `${pointer}/along`, label: "Along", options: ["u", "v"], begin: "u"},
   {kind: "color", pointer: `${pointer}/from`, label: "From", begin: kGradient.from},
   {kind: "color", pointer: `${pointer}/to`, label: "To", begin: kGradient.to},
-  {kind: "number", pointer: `${pointer}/dark`, label: "Dark squares", min: 0, max: 1, step: 0.01, least: 0, most: 1, fallback: 0.25},
+  {
+    kind: "number",
+    pointer: `${pointer}/dark`,
+    label: "Dark squares",
+    min: 0,
+    max: 1,
+    step: 0.01,
+    least: 0,
+    most: 1,
+    fallback: 0.25,
+  },
 ];
 
 /** The file, and where another one is dropped. */

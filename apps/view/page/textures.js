@@ -27,7 +27,10 @@ export function setup(app) {
     if (!element) return;
     const carries = (event) => event.dataTransfer?.types.includes("Files");
     element.addEventListener("dragover", (event) => carries(event) && element.classList.add("drop"));
-    element.addEventListener("dragleave", (event) => element.contains(event.relatedTarget) || element.classList.remove("drop"));
+    element.addEventListener(
+      "dragleave",
+      (event) => element.contains(event.relatedTarget) || element.classList.remove("drop"),
+    );
     element.addEventListener("drop", async (event) => {
       element.classList.remove("drop");
       const [file] = event.dataTransfer?.files ?? [];
@@ -56,7 +59,8 @@ function pick(app, pointer, type) {
 
 /** Materials go with a spectrum of theirs, and without it. */
 export function putTexture({store}, pointer, texture) {
-  const before = store.get(`${pointer}/spectrum/type`) === "materials", after = texture?.type === "materials";
+  const before = store.get(`${pointer}/spectrum/type`) === "materials",
+    after = texture?.type === "materials";
   store.set(`${pointer}/texture`, texture, {live: true});
   if (before !== after) store.set(`${pointer}/spectrum`, after ? newSpectrum("materials") : undefined, {live: true});
   store.commit();
@@ -64,14 +68,17 @@ export function putTexture({store}, pointer, texture) {
 
 async function use(app, pointer, file, type = "image") {
   const most = app.state.limits?.upload_bytes ?? Infinity;
-  if (file.size > most) return app.say(`${file.name} has ${file.size} bytes; at most ${most} are taken.`, {error: true});
+  if (file.size > most)
+    return app.say(`${file.name} has ${file.size} bytes; at most ${most} are taken.`, {error: true});
   app.say(`Sending ${file.name}…`);
   try {
     const got = await app.api.upload(file);
     const before = app.store.get(`${pointer}/texture`) ?? {};
     const {offset, scale, rotate_deg, filter} = before;
     const kept = before.type === type ? {offset, scale, rotate_deg, filter} : {};
-    const texture = Object.fromEntries(Object.entries({type, file: got.file, ...kept}).filter(([, value]) => value !== undefined));
+    const texture = Object.fromEntries(
+      Object.entries({type, file: got.file, ...kept}).filter(([, value]) => value !== undefined),
+    );
     putTexture(app, pointer, texture);
     app.say(`${got.file}: ${got.width} × ${got.height} pixels, now on ${pointer.split("/").at(-1)}.`);
   } catch (error) {

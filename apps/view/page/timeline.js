@@ -45,7 +45,9 @@ class Timeline {
   }
 
   get #now() {
-    return this.#keyframes ? this.#app.view.frame ?? this.#first : this.#app.view.data;
+    const {data, frame} = this.#app.view;
+    if (this.#keyframes) return frame ?? this.#first;
+    return data === "live" ? this.#app.live?.source.data ?? this.#first : data; // what is moved is of that dataset
   }
 
   #listen(element) {
@@ -64,10 +66,11 @@ class Timeline {
     this.#app.addEventListener("view", () => this.#update());
   }
 
-  #go(frame) {
+  /** Resolves when the page has turned to that frame; drawn it is later. */
+  async #go(frame) {
     if (!Number.isFinite(frame)) return;
     const to = Math.min(this.#last, Math.max(this.#first, Math.round(frame)));
-    if (to !== this.#now) this.#app.show(this.#keyframes ? {frame: to} : {data: to});
+    if (to !== this.#now) await this.#app.show(this.#keyframes ? {frame: to} : {data: to});
     this.#update();
   }
 
@@ -78,7 +81,6 @@ class Timeline {
 
   #update() {
     const now = this.#now;
-    if (now === "live") return;
     this.#slider.value = now;
     this.#slider.setAttribute("aria-valuetext", this.#keyframes ? `frame ${now}` : this.#app.state.datasets[now]?.name ?? `${now}`);
     if (document.activeElement !== this.#number) this.#number.value = now;
@@ -93,13 +95,13 @@ class Timeline {
     this.#reached.textContent = "";
     this.#drawn = [];
     if (!on) return;
-    if (this.#now === this.#last) this.#go(this.#first);
+    if (this.#now === this.#last) await this.#go(this.#first);
     let due = performance.now();
     while (this.#playing) {
       due = Math.max(due + 1000 / this.#wanted, performance.now() - 100);
       await pause(due - performance.now());
       if (!this.#playing) break;
-      if (!this.#advance()) return this.#setPlaying(false);
+      if (!(await this.#advance())) return this.#setPlaying(false);
       await this.#app.frames.idle();
       this.#measure();
     }
@@ -110,9 +112,9 @@ class Timeline {
   }
 
   /** False at the end. */
-  #advance() {
-    if (this.#now < this.#last) this.#go(this.#now + 1);
-    else if (this.#loop.checked) this.#go(this.#first);
+  async #advance() {
+    if (this.#now < this.#last) await this.#go(this.#now + 1);
+    else if (this.#loop.checked) await this.#go(this.#first);
     else return false;
     return true;
   }
