@@ -1,5 +1,5 @@
 // What nullcone-view takes, from the server's answer to the pixels on the screen of a headless browser.
-//   node bench/view.mjs [FRAMES]       with NULLCONE_TOOLS=build/release/bin NULLCONE_SOURCE=. (FRAMES for the memory, default 10000)
+//   node bench/view.mjs [FRAMES]     FRAMES: for the memory (10000)
 import {request, Agent} from "node:http";
 import {readFileSync} from "node:fs";
 import {idle, launch, open, sceneOf, serve} from "../tests/view/browser.mjs";
@@ -101,28 +101,39 @@ async function memory(server) {
   console.log(`memory of the server over ${kFrames} frames, MiB: ${size.map((x) => x.toFixed(1)).join(" ")}`);
 }
 
-async function live(browser) {
-  const scene = sceneOf("goedel_earth.json", {camera: {type: "perspective", azimuth_deg: 40, fov_deg: 70, resolution: [640, 360]}});
-  const place = (name, x, y, z) => ({name, shape: {type: "sphere", radius: 0.1}, placing: {type: "local", worldline: {type: "static", event: [0, x, y, z]}}});
-  scene.objects = [scene.objects[0], place("left", 0.5, 0.5, 0.1), place("right", 0.6, 0.2, -0.1)];
-  scene.look.objects = {earth: scene.look.objects.earth};
+const sphere = (name, radius, x, y, z) => ({name, shape: {type: "sphere", radius}, placing: {type: "local", worldline: {type: "static", event: [0, x, y, z]}}});
+
+/** The three spheres at rest of bench/trace.cpp, and two beside the Earth that falls with 0.7 c. */
+function liveScenes() {
+  const camera = {type: "perspective", fov_deg: 90, resolution: [640, 360]};
+  const rest = {metric: {name: "goedel"}, observer: {event: [0, 0, 0, 0]}, camera: {...camera, azimuth_deg: 0}, max_lookback: 7,
+    objects: [sphere("a", 0.2, 0.9, 0.1, 0), sphere("b", 0.15, 0.4, 0.8, 0.2), sphere("c", 0.1, 0.5, -0.6, -0.1)], look: {objects: {}}};
+  for (const [name, kelvin] of [["a", 5762], ["b", 4000], ["c", 9000]])
+    rest.look.objects[name] = {spectrum: {type: "black_body", temperature_K: kelvin}};
+  const falling = sceneOf("goedel_earth.json", {camera: {...camera, azimuth_deg: 40}});
+  falling.objects = [falling.objects[0], sphere("left", 0.1, 0.5, 0.5, 0.1), sphere("right", 0.1, 0.6, 0.2, -0.1)];
+  falling.look.objects = {earth: falling.look.objects.earth};
+  return {"three spheres at rest": rest, "two, and a falling Earth": falling};
+}
+
+async function live(browser, name, scene) {
   const server = await serve(scene), all = [];
   for (let i = 0; i < 110; ++i)
-    all.push(await ask(server.address, "api/trace?scale=1&format=raw", {scene: {camera: {azimuth_deg: 40 + 0.2 * i}}, look: scene.look}));
-  report("server, Goedel, three spheres, 640 x 360 traced: all", all.slice(10).map(({ms}) => ms));
+    all.push(await ask(server.address, "api/trace?scale=1&format=raw", {scene: {camera: {azimuth_deg: scene.camera.azimuth_deg + 0.2 * i}}, look: scene.look}));
+  report(`server, Goedel, 640 x 360 traced, ${name}: all`, all.slice(10).map(({ms}) => ms));
   const page = await open(browser, server.address);
-  const rates = await page.evaluate(async () => {
+  const rates = await page.evaluate(async (azimuth) => {
     const {live, frames} = window.nullcone, counts = {};
     await live.begin();
     await frames.idle();
     live.source.addEventListener("frame", ({detail}) => (counts[detail.scale] = (counts[detail.scale] ?? 0) + 1));
     const begin = performance.now();
     for (let i = 0; performance.now() - begin < 4000; ++i) {
-      live.scene.set("/camera/azimuth_deg", 40 + 0.1 * (i % 200), {live: true});
+      live.scene.set("/camera/azimuth_deg", azimuth + 0.1 * (i % 200), {live: true});
       await new Promise((done) => requestAnimationFrame(done));
     }
     return counts;
-  });
+  }, scene.camera.azimuth_deg);
   for (const [scale, count] of Object.entries(rates)) console.log(`page, the camera turned: ${(count / 4).toFixed(1)} frames a second, every ${scale}`);
   await page.context().close();
   await server.stop();
@@ -135,7 +146,7 @@ const page = await open(browser, server.address);
 await idle(page);
 await slider(page);
 await page.context().close();
-await live(browser);
+for (const [name, scene] of Object.entries(liveScenes())) await live(browser, name, scene);
 await memory(server);
 await browser.close();
 await server.stop();

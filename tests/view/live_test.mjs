@@ -123,6 +123,7 @@ test("a sequence is a time line that plays", async () => {
     assert.equal(difference(await shown(page), await developed(page, server.folder, [server.data[number]])), 0, `frame ${number}`);
   await agrees(0);
   await page.getByRole("button", {name: "next frame"}).click();
+  await page.waitForFunction(() => window.nullcone.view.data === 1);
   await idle(page);
   await agrees(1);
   const seen = await page.evaluate(() => new Promise((done) => {
@@ -146,6 +147,7 @@ test("the keyframes of a look are a time line over one dataset", async () => {
   const page = await open(browser, server.address);
   await page.locator(".timeline-number").fill("7");
   await page.locator(".timeline-number").press("Enter");
+  await page.waitForFunction(() => window.nullcone.view.frame === 7);
   await idle(page);
   const look = await lookFile(page, server.folder);
   assert.equal(difference(await shown(page), await developed(page, server.folder, [server.data[0], "--look", look, "--frame", "7"])), 0);

@@ -1,12 +1,12 @@
 // The page of nullcone-view in a real browser against the real server: what it shows is what the command line gives.
-// Run by ctest; by hand: NULLCONE_TOOLS=build/release/bin NULLCONE_SOURCE=. node --test tests/view/page_test.mjs
+// Run by ctest; by hand: node --test tests/view/page_test.mjs
 // With NULLCONE_SCREENSHOTS=FOLDER it leaves pictures to look at.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
-import {copyFileSync, readFileSync, writeFileSync} from "node:fs";
+import {copyFileSync, readFileSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
-import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, source, tool, tools} from "./browser.mjs";
+import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, tool, tools} from "./browser.mjs";
 
 let browser, server, page;
 const data = () => server.data[0];

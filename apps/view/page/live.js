@@ -25,6 +25,7 @@ export function setup(app) {
     live?.leave();
     live = app.live = null;
     body.inert = true;
+    app.dispatchEvent(new CustomEvent("live"));
     clearTimeout(timer);
     timer = setTimeout(begin, kSettled);
   });

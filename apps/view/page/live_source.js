@@ -64,6 +64,8 @@ export class LiveSource extends EventTarget {
     frame.scale = scale;
     const work = Object.values(frame.times).reduce((sum, ms) => sum + ms, 0), before = this.#took.get(scale);
     this.#took.set(scale, before === undefined ? work : 0.6 * before + 0.4 * work);
+    // A scale that was too slow once is tried again after a while.
+    for (const [other, ms] of this.#took) if (other !== scale) this.#took.set(other, 0.98 * ms);
     if (number > this.#traced.number) this.#traced = {number, version, scale};
     this.dispatchEvent(new CustomEvent("frame", {detail: {ms: frame.ms, scale, trace: frame.times.trace}}));
     return frame;
