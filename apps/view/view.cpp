@@ -1,4 +1,5 @@
 // nullcone-view: datasets in the browser.
+#include <malloc.h>
 #include <spawn.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -102,6 +103,9 @@ int work(Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Pictures go back to the system when they are done with. Else each worker's heap keeps some: 600 MiB and
+  // rising in place of 320 for pictures of 1280 x 1024, against 1.5 ms a frame.
+  mallopt(M_MMAP_THRESHOLD, 4'000'000);
   CLI::App app("Shows datasets in the browser: looks can be changed there, and scenes moved.",
                "nullcone-view");
   Options options;

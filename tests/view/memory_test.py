@@ -13,7 +13,8 @@ from serve import Server
 TOOLS, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 FRAMES = int(sys.argv[3]) if len(sys.argv) > 3 else 2000
 SIZE = [int(x) for x in sys.argv[4:6]] or [264, 30]
-MOST_GROWTH = 8.0  # MiB after the first fifth: threads find their arenas, tables their sizes
+# MiB after the first fifth: threads find their arenas, tables of spectra their bounds; and pictures that are just there.
+MOST_GROWTH = 8.0 + 24 * SIZE[0] * SIZE[1] / 1e6
 
 
 def resident(pid):

@@ -75,7 +75,7 @@ class Inspection {
     this.#pin.textContent = this.#pinned ? "Unpin (P)" : "Pin (P)";
     this.#marker.setAttribute("visibility", this.#pinned ? "visible" : "hidden");
     if (this.#pinned) {
-      this.#marker.setAttribute("d", cross(at.x + 0.5, at.y + 0.5, Math.max(4, 8 / this.#app.picture.zoom)));
+      this.#marker.setAttribute("d", cross(at.x + 0.5, at.y + 0.5, 1 + 8 / this.#app.picture.zoom));
       this.#panel.element.open = true;
     }
     this.#ask(at.x, at.y);
