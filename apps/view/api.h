@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/buffers.h"
 #include "apps/view/guard.h"
 #include "apps/view/http_server.h"
 #include "apps/view/library.h"
@@ -31,6 +32,8 @@ class Api {
 
   /// `path` as Guard::path() has it.
   Answer answer(const Request& request, std::string_view path);
+  /// Where bodies go that were sent.
+  void reuse(std::string body) { buffers_.give(std::move(body)); }
 
  private:
   using Route = Answer (Api::*)(const Request&, Query&);
@@ -67,6 +70,7 @@ class Api {
   ApiOptions options_;
   Library library_;
   TemporaryFolder folder_;
+  Buffers buffers_;
   Looks looks_;
   Viewers viewers_;
   std::atomic<int> heavy_ = 0, serial_ = 0;

@@ -75,8 +75,9 @@ Answer Api::shown(Viewer& viewer, const Subject& subject, int scale, Query& quer
   std::vector<std::string> notes;
   const pr::Image& image = viewer.render(subject.loaded, scale, look_of(look, subject), notes);
   const double render_seconds = watch.lap();
-  Answer out{200, std::string(content_type(format)),
-             encode(format, image.width, image.height, image.encoded)};
+  Answer out{
+      200, std::string(content_type(format)),
+      encode(format, image.width, image.height, image.encoded, format == Format::raw ? buffers_.take() : "")};
   std::string times = trace_seconds > 0 ? "trace=" + milliseconds(trace_seconds) + ";" : "";
   times += "render=" + milliseconds(render_seconds) + ";encode=" + milliseconds(watch.lap());
   std::array<char, 32> white{};

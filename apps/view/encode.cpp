@@ -38,9 +38,9 @@ struct Pixels {
   throw WorkError("picture", "cannot be encoded as " + std::string(format) + ": " + std::string(why));
 }
 
-std::string to_rgba(const Pixels& in) {
+std::string to_rgba(const Pixels& in, std::string out) {
   static_assert(std::endian::native == std::endian::little);
-  std::string out(4 * in.count(), '\0');
+  out.resize(4 * in.count());
   if (in.count() == 0) return out;
   const std::uint8_t* from = in.rgb.data();
   char* to = out.data();
@@ -151,7 +151,8 @@ std::string_view content_type(Format format) {
   return "application/octet-stream";
 }
 
-std::string encode(Format format, int width, int height, std::span<const std::uint8_t> rgb) {
+std::string encode(Format format, int width, int height, std::span<const std::uint8_t> rgb,
+                   std::string memory) {
   const Pixels pixels{width, height, rgb};
   if (width < 1 || height < 1 || rgb.size() != 3 * pixels.count())
     throw WorkError("picture", "has " + std::to_string(rgb.size()) + " bytes, which are not " +
@@ -166,7 +167,7 @@ std::string encode(Format format, int width, int height, std::span<const std::ui
     case Format::raw:
       break;
   }
-  return to_rgba(pixels);
+  return to_rgba(pixels, std::move(memory));
 }
 
 }  // namespace nullcone::view

@@ -102,7 +102,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     waiting_place_.reset();
   }
   void end_request() {
-    if (std::exchange(admitted_, false)) shared_.written(request_.head);
+    if (!std::exchange(admitted_, false)) return;
+    shared_.written(request_.head, response_ ? std::move(response_->body()) : std::string());
   }
 
   /// From here on a request has to come soon.

@@ -55,8 +55,9 @@ class HttpServer {
   using Admit = std::function<Admission(const Head&)>;
   /// Called in one of the workers' threads.
   using Handle = std::function<Answer(const Request&)>;
-  /// Called when all of an answer has been written, or its peer has gone; in the server's own thread.
-  using Written = std::function<void(const Head&)>;
+  /// Called when all of an answer has been written, or its peer has gone, with its body; in the server's own
+  /// thread.
+  using Written = std::function<void(const Head&, std::string body)>;
 
   /// Binds to `address` (an IP address) and `port` (0: any free one). Throws InputError for addresses that
   /// there are not, and WorkError where the port is taken.
