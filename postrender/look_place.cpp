@@ -12,7 +12,8 @@ std::string parse_file_name(JsonObject& in, std::string_view key, const LookSour
   if (file.empty() || file.find('\0') != std::string::npos) in.refuse(key, "expected the name of a file");
   if (source.names != nullptr) {
     const auto known = source.names->find(file);
-    if (known == source.names->end()) in.refuse(key, "expected a file of the first look, or one that was sent");
+    if (known == source.names->end())
+      in.refuse(key, "expected a file of the first look, or one that was sent");
     return known->second;
   }
   const std::filesystem::path path = (std::filesystem::path(source.folder) / file).lexically_normal();
