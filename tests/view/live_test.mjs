@@ -58,7 +58,7 @@ test("a dragged camera and a moved object are traced again, and saved", async ()
   assert.ok(Math.abs(first.changes.camera.azimuth_deg - 40) > 5, JSON.stringify(first.changes));
   assert.equal(difference(await shown(page), first.picture), 0, "the camera was turned");
   const scales = await page.evaluate(() => window.scales);
-  assert.ok(scales.length > 4 && scales.at(-1) === 1, `${scales}`);
+  assert.ok(scales.some((scale) => scale > 1) && scales.at(-1) === 1, `${scales}`);
   await screenshot(page, "live");
 
   // Numbers of an object; what cannot be is refused in a line and the picture stays.
