@@ -21,6 +21,10 @@ export function sceneOf(file, changes = {}) {
   return scene;
 }
 
+const running = new Set();
+/** Ends what failed tests have left. */
+export const stopAll = () => Promise.all([...running].map((stop) => stop()));
+
 /** A folder with a traced scene and a server of it; `stop()` ends both. */
 export async function serve(scenes, ...options) {
   const folder = mkdtempSync(join(tmpdir(), "nullcone-page-"));
@@ -38,11 +42,13 @@ export async function serve(scenes, ...options) {
     server.once("exit", () => fail(new Error("nullcone-view ended")));
   });
   const stop = async () => {
+    running.delete(stop);
     const ended = new Promise(done => server.once("exit", done));
     server.kill("SIGINT");
     await ended;
     rmSync(folder, {recursive: true, force: true});
   };
+  running.add(stop);
   return {folder, data, address, pid: server.pid, stop};
 }
 

@@ -9,12 +9,14 @@ import pathlib
 import random
 import resource
 import sys
+import threading
 import time
 
 from serve import Server, read_answer
 
 TOOLS, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 SLOW = 10 if os.environ.get("NULLCONE_SANITIZED") else 1
+EARTH = pathlib.Path("/usr/share/xplanet/images/earth.jpg").read_bytes()
 faults = []
 checks = 0
 
@@ -172,6 +174,29 @@ def slow_and_vanished(server):
         peer.close()
 
 
+def many_viewers(server):
+    """Honest pages side by side, each with a look and a scene of its own, and pictures of one another."""
+    def one(number):
+        viewer = f"{number:015x}a"
+        for i in range(12):
+            kelvin = 2000 + 100 * number + i
+            look = {"objects": {"earth": {"spectrum": {"type": "black_body", "temperature_K": kelvin}}}}
+            frames = [server.request("POST", f"api/frame?scale={scale}", look, viewer) for scale in (1, 2)]
+            traced = server.request("POST", "api/trace?scale=2", {"scene": {"camera": {"azimuth_deg": 10 * number + i}}, "look": look}, viewer)
+            others = [server.request("GET", path, viewer=viewer) for path in ("api/images?object=earth", "api/histogram?object=earth", "api/channel?name=t")]
+            sent = (429,)
+            while sent[0] == 429:  # two at a time
+                sent = server.request("POST", f"api/texture?name=map{number}.jpg", EARTH + bytes([number, i]), viewer)
+            for status, body in [*frames, traced, *others, sent]:
+                check(status == 200, f"viewer {number}: {status} {body[:100]}")
+            check(len(frames[0][1]) == 4 * 264 * 30, f"viewer {number}: a picture")
+    threads = [threading.Thread(target=one, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
 def flood(server):
     statuses = []
     with server.connect() as peer:
@@ -207,6 +232,8 @@ def main():
         check(server.stop() == 0, "the server did not end as it should")
         check(sorted(path.name for path in server.place.iterdir()) == before, "files were written")
         check(not list((server.place / "tmp").iterdir()), "temporary files were left")
+    with Server(TOOLS, SOURCE) as server:
+        many_viewers(server)
     with Server(TOOLS, SOURCE, "--token") as server:
         check(len(server.base) == 34, f"a token of 32 digits: {server.base}")
         alive(server)

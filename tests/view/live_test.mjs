@@ -3,11 +3,14 @@ import assert from "node:assert/strict";
 import {writeFileSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
-import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, tool} from "./browser.mjs";
+import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, stopAll, tool} from "./browser.mjs";
 
 let browser;
 before(async () => (browser = await launch()));
-after(async () => browser?.close());
+after(async () => {
+  await browser?.close();
+  await stopAll();
+});
 
 const spheres = () => {
   const scene = sceneOf("goedel_earth.json", {camera: {type: "perspective", azimuth_deg: 40, fov_deg: 70, resolution: [320, 180]}});

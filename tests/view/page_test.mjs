@@ -6,7 +6,7 @@ import {execFileSync} from "node:child_process";
 import {copyFileSync, readFileSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
-import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, tool, tools} from "./browser.mjs";
+import {developed, difference, idle, launch, lookFile, open, sceneOf, screenshot, serve, shown, stopAll, tool, tools} from "./browser.mjs";
 
 let browser, server, page;
 const data = () => server.data[0];
@@ -19,7 +19,7 @@ before(async () => {
 });
 after(async () => {
   await browser?.close();
-  await server?.stop();
+  await stopAll();
 });
 
 /** What is on the screen against what nullcone-postrender makes of the page's look. */
