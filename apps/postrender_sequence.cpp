@@ -64,7 +64,7 @@ class Sequence {
  public:
   Sequence(const PostrenderOptions& options, std::vector<pr::FrameFiles> files)
       : options_(options), files_(std::move(files)), progress_(options, files_.size()) {
-    if (!pr::has_number(options.data)) manifest_ = read_manifest(options.data);
+    if (!has_number(options.data)) manifest_ = read_manifest(options.data);
   }
 
   /// Throws InputError where a picture would overwrite a file that a look names.
@@ -214,7 +214,7 @@ int render_sequence(const PostrenderOptions& options) {
   // Step 1: everything that can be wrong before any work.
   const pr::FramePatterns patterns{options.data, options.looks, options.picture};
   if (!patterns.any()) throw InputError("--frames", "expected #### in DATA, --look or --output");
-  std::vector<pr::FrameFiles> files = pr::files_of(patterns, pr::parse_frames(options.frames));
+  std::vector<pr::FrameFiles> files = pr::files_of(patterns, parse_frames(options.frames));
   check_movie(options);
   // Step 2: the pictures.
   catch_stop_signals();

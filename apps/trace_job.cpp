@@ -44,6 +44,11 @@ Lines lines_of(const Shard& shard, int height) {
   return {line(shard.number - 1), std::min(line(shard.number), height)};
 }
 
+std::string shard_path(const std::string& output, const Shard& shard) {
+  return output.substr(0, output.size() - 4) + ".shard-" + std::to_string(shard.number) + "-of-" +
+         std::to_string(shard.count) + ".exr";
+}
+
 std::string partial_path(const std::string& output) {
   return output.substr(0, output.size() - 4) + ".partial.exr";
 }

@@ -21,6 +21,9 @@ Shard read_shard(const std::string& text);
 /// Its scan lines of a picture. Throws InputError where there are fewer bands than shards.
 Lines lines_of(const Shard& shard, int height);
 
+/// NAME.shard-i-of-n.exr beside NAME.exr.
+std::string shard_path(const std::string& output, const Shard& shard);
+
 /// Where an interrupted run leaves what it has: NAME.partial.exr beside NAME.exr.
 std::string partial_path(const std::string& output);
 

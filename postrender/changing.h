@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "postrender/keyframes.h"
+#include "core/base/keyframes.h"
 
 namespace nullcone::postrender {
 

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "postrender/keyframes.h"
+#include "core/base/keyframes.h"
 #include "postrender/look_path.h"
 
 namespace nullcone::postrender {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/keyframes.h"
 #include "postrender/kernel.h"
-#include "postrender/keyframes.h"
 
 namespace nullcone::postrender {
 

@@ -1,5 +1,5 @@
 // Numbers that change with time, frames and their files, and looks told in full.
-#include "postrender/keyframes.h"
+#include "core/base/keyframes.h"
 
 #include "postrender/frames.h"
 #include "postrender/look_source.h"

@@ -70,7 +70,7 @@ void check_options(Options& options) {
   if (!options.frames.empty() && options.api.data.size() > 1)
     throw InputError("--frames", "expected one dataset: several are a time line by themselves");
   if (options.frames.empty()) return;
-  const std::vector<int> frames = postrender::parse_frames(options.frames);
+  const std::vector<int> frames = parse_frames(options.frames);
   const auto [least, greatest] = std::ranges::minmax(frames);
   options.api.frames = {least, greatest};
 }

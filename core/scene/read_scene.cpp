@@ -13,6 +13,7 @@
 #include "core/scene/read_lights.h"
 #include "core/scene/read_placing.h"
 #include "core/scene/read_records.h"
+#include "core/scene/sequence.h"
 
 namespace nullcone {
 
@@ -168,6 +169,7 @@ Scene read_scene(const std::string& text, const std::string& place,
                  std::span<const MetricDescription> metrics) {
   nlohmann::json document = parse_json(text, place);
   JsonObject root(document, place, "");
+  refuse_sequence(document, place);
   Scene scene;
   const MetricDescription& metric = read_metric(root.object("metric"), metrics, scene);
   scene.observer = read_observer(root.object("observer"));

@@ -28,7 +28,8 @@ struct MetricDescription {
 };
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0
-/// where the scene does not give one: the spacetime then says what suits it. Throws InputError.
+/// where the scene does not give one: the spacetime then says what suits it. Throws InputError, also for a
+/// sequence (see scene_at()).
 Scene read_scene(const std::string& text, const std::string& place,
                  std::span<const MetricDescription> metrics);
 

@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "core/record/dataset_file.h"
 #include "core/scene/read_scene.h"
+#include "core/scene/sequence.h"
 #include "postrender/look.h"
 #include "postrender/look_source.h"
 
@@ -24,7 +25,10 @@ const std::vector<MetricDescription>& metrics() {
 
 void read(char what, const std::string& text) {
   if (what % 4 == 0) {
-    read_scene(text, "scene", metrics());
+    const nlohmann::json document = parse_json(text, "scene");
+    if (!is_sequence(document)) return void(read_scene(text, "scene", metrics()));
+    const Frames frames = read_frames(document, "scene");
+    read_scene(canonical_json(scene_at(document, frames, frames.count / 2, "scene")), "scene", metrics());
   } else if (what % 4 == 1) {
     manifest_from_json(text, "manifest");
   } else {

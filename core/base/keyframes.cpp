@@ -1,13 +1,15 @@
-#include "postrender/keyframes.h"
+#include "core/base/keyframes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
 
-namespace nullcone::postrender {
+namespace nullcone {
 
 using nlohmann::json;
 
@@ -39,13 +41,27 @@ double Keyframes::at(double time) const {
 
 bool is_keyframes(const json& value) { return value.is_object() && value.contains("keyframes"); }
 
-Keyframes parse_keyframes(const json& value, const std::string& place, const std::string& pointer) {
+namespace {
+
+/// In the order of Keyframes::Clock.
+constexpr std::array<const char*, 4> kClockNames = {"frame", "t", "tau", "time"};
+
+Keyframes::Clock read_clock(JsonObject& in, const std::vector<Keyframes::Clock>& clocks) {
+  std::vector<std::string> words;
+  words.reserve(clocks.size());
+  for (const Keyframes::Clock clock : clocks)
+    words.emplace_back(kClockNames[static_cast<std::size_t>(clock)]);
+  const std::string by = in.word("by", words, words.front());
+  return clocks[static_cast<std::size_t>(std::ranges::find(words, by) - words.begin())];
+}
+
+}  // namespace
+
+Keyframes parse_keyframes(const json& value, const std::string& place, const std::string& pointer,
+                          const std::vector<Keyframes::Clock>& clocks) {
   JsonObject in(value, place, pointer);
   Keyframes out;
-  const std::string by = in.word("by", {"frame", "t", "tau"}, "frame");
-  out.clock = by == "frame" ? Keyframes::Clock::frame
-              : by == "t"   ? Keyframes::Clock::t
-                            : Keyframes::Clock::tau;
+  out.clock = read_clock(in, clocks);
   const bool smooth = in.word("interpolation", {"linear", "smooth"}, "linear") == "smooth";
   const json& keys = in.at("keyframes");
   if (!keys.is_array() || keys.empty()) in.refuse("keyframes", "expected a list [[time, value], ...]");
@@ -65,18 +81,23 @@ Keyframes parse_keyframes(const json& value, const std::string& place, const std
   return out;
 }
 
-json at_frame(json document, double frame, const std::string& place, const std::string& pointer) {
-  if (is_keyframes(document)) {
-    const Keyframes keys = parse_keyframes(document, place, pointer);
-    return keys.clock == Keyframes::Clock::frame ? json(keys.at(frame)) : document;
-  }
+json replace_keyframes(json document, const std::string& pointer,
+                       const std::function<json(const json&, const std::string& pointer)>& by) {
+  if (is_keyframes(document)) return by(document, pointer);
   if (document.is_object())
     for (auto& [key, value] : document.items())
-      value = at_frame(std::move(value), frame, place, pointer + "/" + escape_pointer(key));
+      value = replace_keyframes(std::move(value), pointer + "/" + escape_pointer(key), by);
   if (document.is_array())
     for (std::size_t i = 0; i < document.size(); ++i)
-      document[i] = at_frame(std::move(document[i]), frame, place, pointer + "/" + std::to_string(i));
+      document[i] = replace_keyframes(std::move(document[i]), pointer + "/" + std::to_string(i), by);
   return document;
 }
 
-}  // namespace nullcone::postrender
+json at_frame(json document, double frame, const std::string& place, const std::string& pointer) {
+  return replace_keyframes(std::move(document), pointer, [&](const json& value, const std::string& where) {
+    const Keyframes keys = parse_keyframes(value, place, where);
+    return keys.clock == Keyframes::Clock::frame ? json(keys.at(frame)) : value;
+  });
+}
+
+}  // namespace nullcone
