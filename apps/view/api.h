@@ -65,7 +65,7 @@ class Api {
   Subject subject(Viewer& viewer, Query& query);
   postrender::Look look_of(const nlohmann::json& document, const Subject& subject) const;
   Answer shown(Viewer& viewer, const Subject& subject, int scale, Query& query, const nlohmann::json& look,
-               double trace_ms);
+               double trace_seconds);
 
   ApiOptions options_;
   Library library_;

@@ -13,7 +13,8 @@ namespace nullcone::view {
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   const std::filesystem::path place = std::filesystem::temp_directory_path(error);
-  path_ = (error ? std::filesystem::path("/tmp") : place) / "nullcone-view-XXXXXX";
+  if (error) throw WorkError("TMPDIR", error.message());
+  path_ = place / "nullcone-view-XXXXXX";
   if (mkdtemp(path_.data()) == nullptr) throw WorkError(path_, std::strerror(errno));
 }
 

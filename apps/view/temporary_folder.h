@@ -7,7 +7,7 @@ namespace nullcone::view {
 
 class TemporaryFolder {
  public:
-  /// In TMPDIR, else /tmp; for the user alone. Throws WorkError.
+  /// Where the system has temporary files (TMPDIR); for the user alone. Throws WorkError.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
