@@ -77,6 +77,13 @@ Api::Subject Api::subject(Viewer& viewer, Query& query) {
   return {library_.get(number), entry.path, frame < 0 ? entry.frame : frame};
 }
 
+Api::Held Api::hold(const Request& request, Query& query) {
+  std::shared_ptr<Viewer> viewer = viewers_.get(request.head.viewer);
+  std::unique_lock lock(viewer->mutex);
+  Subject subject = this->subject(*viewer, query);
+  return {std::move(viewer), std::move(lock), std::move(subject)};
+}
+
 pr::Look Api::look_of(const json& document, const Subject& subject) const {
   const Manifest& manifest = subject.loaded->manifest();
   pr::Look out = looks_.parse(document, manifest, subject.frame);

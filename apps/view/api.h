@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,13 @@ class Api {
     int frame;
   };
   Subject subject(Viewer& viewer, Query& query);
+  /// The viewer who asks, for this request alone, and what it is about.
+  struct Held {
+    std::shared_ptr<Viewer> viewer;
+    std::unique_lock<std::mutex> lock;
+    Subject subject;
+  };
+  Held hold(const Request& request, Query& query);
   postrender::Look look_of(const nlohmann::json& document, const Subject& subject) const;
   Answer shown(Viewer& viewer, const Subject& subject, int scale, Query& query, const nlohmann::json& look,
                double trace_seconds);

@@ -92,11 +92,9 @@ Answer Api::shown(Viewer& viewer, const Subject& subject, int scale, Query& quer
 }
 
 Answer Api::frame(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
   const int scale = scale_of(query);
-  return shown(*viewer, subject, scale, query, parse_json(request.body, "look"), 0);
+  return shown(*held.viewer, held.subject, scale, query, parse_json(request.body, "look"), 0);
 }
 
 Answer Api::texture(const Request& request, Query& query) {

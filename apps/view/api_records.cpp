@@ -35,9 +35,8 @@ Answer Api::state(const Request&, Query& query) {
 }
 
 Answer Api::dataset(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   query.finish();
   const Manifest& m = subject.loaded->manifest();
   json scene = m.scene.empty() ? json::object() : parse_json(m.scene, subject.name);
@@ -68,9 +67,8 @@ Answer Api::dataset(const Request& request, Query& query) {
 }
 
 Answer Api::look(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   query.finish();
   const Manifest& manifest = subject.loaded->manifest();
   pr::LookInFull full;
@@ -81,9 +79,8 @@ Answer Api::look(const Request& request, Query& query) {
 }
 
 Answer Api::pixel(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   const int x = query.integer("x", 0, 1 << 30), y = query.integer("y", 0, 1 << 30);
   query.finish();
   return answer_of(
@@ -91,9 +88,8 @@ Answer Api::pixel(const Request& request, Query& query) {
 }
 
 Answer Api::channel(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   const std::string name = query.text("name");
   const Format format = format_of(query);
   const int scale = scale_of(query);
@@ -111,9 +107,8 @@ Answer Api::channel(const Request& request, Query& query) {
 }
 
 Answer Api::histogram(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   const std::string object = query.text("object"), channel = query.text("channel", "t");
   const int bins = query.integer("bins", 1, 1024, 128);
   query.finish();
@@ -121,9 +116,8 @@ Answer Api::histogram(const Request& request, Query& query) {
 }
 
 Answer Api::images(const Request& request, Query& query) {
-  const auto viewer = viewers_.get(request.head.viewer);
-  const std::scoped_lock lock(viewer->mutex);
-  const Subject subject = this->subject(*viewer, query);
+  const Held held = hold(request, query);
+  const Subject& subject = held.subject;
   const std::string object = query.text("object");
   query.finish();
   return answer_of(images_of(subject.loaded->records(), object));
