@@ -1,8 +1,14 @@
 #include "apps/trace_frames.h"
 
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/scene_text.h"
+#include "apps/stop_signals.h"
 #include "core/base/error.h"
 #include "core/base/frame_numbers.h"
 #include "core/base/json.h"
@@ -19,18 +25,9 @@ int format_of(const Scene& scene) {
   return out.format;
 }
 
-/// The name without the ending that shard_path() would give it, so that both names may be told.
-std::string without_shard(std::string output, const std::string& shard) {
-  if (shard.empty()) return output;
-  const std::string ending = shard_path(".exr", read_shard(shard));
-  if (output.size() > ending.size() && output.ends_with(ending))
-    output.replace(output.size() - ending.size(), ending.size(), ".exr");
-  return output;
-}
-
 }  // namespace
 
-std::string unfinished(const std::string& path, const Scene& scene, const std::optional<Shard>& shard) {
+std::string unlike(const std::string& path, const Scene& scene, const std::optional<Shard>& shard) {
   const int height = scene.camera.height;
   const Lines lines = shard ? lines_of(*shard, height) : Lines{0, height};
   std::error_code error;
@@ -41,6 +38,16 @@ std::string unfinished(const std::string& path, const Scene& scene, const std::o
     if (found.format != format_of(scene)) return "is of another format";
     if (found.first_line != lines.first || found.lines != lines.end - lines.first || found.partial())
       return "does not hold all scan lines";
+    return {};
+  } catch (const InputError&) {
+    return "cannot be read as a dataset";
+  }
+}
+
+std::string unfinished(const std::string& path, const Scene& scene, const std::optional<Shard>& shard) {
+  if (std::string fault = unlike(path, scene, shard); !fault.empty()) return fault;
+  try {
+    if (is_intact(path).value_or(false)) return "";  // else let it be told what is wrong
     const std::vector<std::string> faults = verify_file(path);
     return faults.empty() ? "" : faults.front();
   } catch (const InputError&) {
@@ -48,18 +55,20 @@ std::string unfinished(const std::string& path, const Scene& scene, const std::o
   }
 }
 
-TraceFrames::TraceFrames(const TraceOptions& options)
-    : source_(options.scene),
-      output_(without_shard(options.output, options.shard)),
+TraceFrames::TraceFrames(const std::string& scene, std::string output, const std::string& frames)
+    : TraceFrames(scene, parse_json(scene_text(scene), scene), std::move(output), frames) {}
+
+TraceFrames::TraceFrames(std::string source, nlohmann::json scene, std::string output,
+                         const std::string& frames)
+    : source_(std::move(source)),
+      output_(std::move(output)),
+      document_(std::move(scene)),
       metrics_(metric_descriptions()) {
-  if (options.scene.empty() || !options.from.empty())
-    throw InputError("command line", "expected a SCENE beside --frames");
   if (output_.size() <= 4 || !output_.ends_with(".exr"))
-    throw InputError(options.output, "expected a name that ends in .exr");
-  document_ = parse_json(scene_text(source_), source_);
+    throw InputError(output_, "expected a name that ends in .exr");
   if (!is_sequence(document_)) throw InputError(source_, "is no sequence; expected \"frames\" in the scene");
   frames_ = read_frames(document_, source_);
-  numbers_ = parse_frames(options.frames);
+  numbers_ = parse_frames(frames.empty() ? "0-" + std::to_string(frames_.count - 1) : frames);
   for (const int frame : numbers_)
     if (frame >= frames_.count)
       throw InputError("--frames", "there is no frame " + std::to_string(frame) + "; expected 0 to " +
@@ -74,5 +83,53 @@ Scene TraceFrames::scene(int frame) const {
 }
 
 std::string TraceFrames::whole_file(int frame) const { return numbered(output_, frame, "--output"); }
+
+namespace {
+
+/// work(0) to work(count - 1), each a task of its own: they take long, and some much longer than others.
+template <class Work>
+void in_parallel(std::size_t count, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner());
+}
+
+/// Of each piece of a frame whether it lacks; of none where the frame is finished as a whole.
+std::vector<char> lacking(const TraceFrames& frames, int frame, int shards, Check check) {
+  const auto fault = check == Check::everything ? unfinished : unlike;
+  const Scene scene = frames.scene(frame);
+  const std::string whole = frames.whole_file(frame);
+  if (fault(whole, scene, {}).empty()) return {};
+  if (shards == 0) return {true};
+  std::vector<char> out(static_cast<std::size_t>(shards));
+  in_parallel(out.size(), [&](std::size_t i) {
+    const Shard shard{static_cast<int>(i) + 1, shards};
+    out[i] = !stop_wanted && !fault(shard_path(whole, shard), scene, shard).empty();
+  });
+  return out;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::int64_t>> missing_pieces(const TraceFrames& frames, int shards, int threads,
+                                                        Check check) {
+  // More threads than cores may help: they wait for disks.
+  std::optional<tbb::global_control> limit;
+  if (threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const std::vector<int>& numbers = frames.numbers();
+  std::vector<std::vector<char>> lacks(numbers.size());
+  tbb::task_arena(threads > 0 ? threads : tbb::task_arena::automatic).execute([&] {
+    in_parallel(numbers.size(), [&](std::size_t i) {
+      if (!stop_wanted) lacks[i] = lacking(frames, numbers[i], shards, check);
+    });
+  });
+  if (stop_wanted) return std::nullopt;
+  std::vector<std::int64_t> out;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    for (std::size_t k = 0; k < lacks[i].size(); ++k)
+      if (lacks[i][k])
+        out.push_back(std::int64_t{numbers[i]} * std::max(1, shards) + static_cast<std::int64_t>(k));
+  std::ranges::sort(out);
+  return out;
+}
 
 }  // namespace nullcone

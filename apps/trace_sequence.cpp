@@ -7,11 +7,28 @@
 #include "apps/stop_signals.h"
 #include "apps/trace_frames.h"
 #include "apps/trace_run.h"
+#include "core/base/error.h"
 #include "core/base/frame_numbers.h"
 
 namespace nullcone {
 
 namespace {
+
+/// The name without the ending that shard_path() would give it, so that both names may be told.
+std::string without_shard(std::string output, const std::string& shard) {
+  if (shard.empty()) return output;
+  const std::string ending = shard_path(".exr", read_shard(shard));
+  if (output.size() > ending.size() && output.ends_with(ending))
+    output.replace(output.size() - ending.size(), ending.size(), ".exr");
+  return output;
+}
+
+TraceFrames frames_of(const TraceOptions& options) {
+  if (options.scene.empty() || !options.from.empty())
+    throw InputError("command line", "expected a SCENE beside --frames");
+  if (options.frames.empty()) parse_frames(options.frames);  // refuses it; all frames are not meant
+  return {options.scene, without_shard(options.output, options.shard), options.frames};
+}
 
 /// Tells each line once, however many frames it is true of.
 class NotesOnce {
@@ -32,7 +49,7 @@ class NotesOnce {
 class FrameTracing {
  public:
   explicit FrameTracing(const TraceOptions& options)
-      : options_(options), frames_(options), notes_(options.common.quiet) {
+      : options_(options), frames_(frames_of(options)), notes_(options.common.quiet) {
     if (!options.shard.empty()) shard_ = read_shard(options.shard);
     check_before_work();
   }
@@ -121,21 +138,9 @@ int trace_frames(const TraceOptions& options) {
 }
 
 int print_missing(const TraceOptions& options) {
-  const TraceFrames frames(options);
-  std::vector<std::int64_t> missing;
-  for (const int frame : frames.numbers()) {
-    const Scene scene = frames.scene(frame);
-    const std::string whole = frames.whole_file(frame);
-    if (stop_wanted) return 3;
-    if (unfinished(whole, scene, {}).empty()) continue;
-    if (options.shards == 0) missing.push_back(frame);
-    for (int i = 1; i <= options.shards; ++i) {
-      const Shard shard{i, options.shards};
-      if (!unfinished(shard_path(whole, shard), scene, shard).empty())
-        missing.push_back(std::int64_t{frame} * options.shards + i - 1);
-    }
-  }
-  std::printf("%s\n", runs_of(std::move(missing)).c_str());
+  auto missing = missing_pieces(frames_of(options), options.shards, options.common.threads);
+  if (!missing) return 3;
+  std::printf("%s\n", runs_of(std::move(*missing)).c_str());
   return 0;
 }
 

@@ -23,7 +23,8 @@ packages=(
 case ${1:-} in
   --test)
     packages+=(clang-format openexr python3-openimageio python3-numpy   # the last reads datasets as users do
-               chromium nodejs)   # the viewer's page in a browser
+               chromium nodejs   # the viewer's page in a browser
+               slurm-wlm)        # a cluster of two nodes on this machine; brings munge
     command -v npm >/dev/null || packages+=(npm)   # some builds of nodejs bring their own
     ;;
   --fuzz) packages+=(clang libclang-rt-dev) ;;

@@ -1,14 +1,10 @@
 // Dataset files that are well, and places where none can be written.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <bit>
-#include <csignal>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/record/whole_file.h"
 #include "core/trace/trace_scene.h"
 #include "metrics/registry.h"
 #include "tests/dataset_fixture.h"
@@ -98,56 +94,6 @@ TEST_F(DatasetFile, WhereNothingCanBeWrittenNothingIsLeft) {
   fs::create_directories(folder / "folder.exr" / "x");
   EXPECT_THROW(write(folder / "folder.exr", sample()), WorkError);
   EXPECT_EQ(listing(), std::vector<std::string>{"folder.exr"});
-}
-
-/// The exit status of a child process that runs `work`.
-template <class Work>
-int in_child(Work&& work) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    work();
-    ::_exit(0);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-TEST_F(DatasetFile, WhatAKilledProcessLeftIsRemovedByTheNextWrite) {
-  const auto killed = [&] {
-    WholeFile part(path);
-    part.stream() << "half of it";
-    part.stream().flush();
-    ::kill(::getpid(), SIGKILL);
-  };
-  EXPECT_EQ(in_child(killed), 128 + SIGKILL);
-  ASSERT_EQ(listing().size(), 1u);
-  EXPECT_NE(listing()[0].find("a.exr.part-nullcone-"), std::string::npos) << listing()[0];
-  write(folder / "b.exr", sample());  // another name: not its affair
-  EXPECT_EQ(listing().size(), 2u);
-  write(path, sample());
-  EXPECT_EQ(listing(), (std::vector<std::string>{"a.exr", "b.exr"}));
-}
-
-TEST_F(DatasetFile, WhatIsBeingWrittenOrIsNoPartIsLeftAlone) {
-  const std::vector<std::string> strangers = {"a.exr.part-2", "a.exr.part-nullcone-x",
-                                              "xa.exr.part-nullcone-1"};
-  for (const std::string& name : strangers) std::ofstream(folder / name) << "precious";
-  fs::create_directories(folder / "a.exr.part-nullcone-0");
-  WholeFile first(path);
-  first.stream() << "first";
-  EXPECT_EQ(in_child([&] { write(path, sample()); }), 0);  // another process,
-  write(path, sample());                                   // and this one again
-  EXPECT_EQ(listing().size(), 6u);
-  first.finish();
-  EXPECT_EQ(slurp(path), "first");
-  EXPECT_EQ(listing(), (std::vector<std::string>{"a.exr", "a.exr.part-2", "a.exr.part-nullcone-0",
-                                                 "a.exr.part-nullcone-x", "xa.exr.part-nullcone-1"}));
-}
-
-TEST_F(DatasetFile, WhatIsNotFinishedIsRemoved) {
-  { WholeFile(path).stream() << "half"; }
-  EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
 Dataset trace_text(const std::string& text, int threads) {

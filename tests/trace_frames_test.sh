@@ -34,6 +34,11 @@ write("order.json", lambda s: s["camera"]["azimuth_deg"].update(keyframes=[[1, 0
 write("twice.json", lambda s: s["observer"]["event"].__setitem__(0, 1.438))
 write("late.json", lambda s: s["camera"].update(elevation_deg={"keyframes": [[1.5, 0], [2, 100]]}))
 write("lonely.json", lambda s: s.pop("frames"))
+def slow(s):
+    s.update(paths="integrated", objects=s["objects"][:1])
+    s["objects"][0]["placing"]["worldline"] = {"type": "static", "event": [0, 0, 0.2, 0]}
+    s["camera"]["resolution"] = [4000, 96]
+write("slow.json", slow)
 PYTHON
 
 expect() { checks=$((checks + 1)); [ "$2" = "$3" ] || fault "$1: '$2', expected '$3'"; }
@@ -78,6 +83,7 @@ python3 -c 'import os; f = open("d.0001.exr", "r+b"); n = os.path.getsize("d.000
 truncate -s -100 d.0002.exr; cp one.exr d.0004.exr
 missing 1-2,4 "${all[@]}"
 missing 3-8,12-14 "${all[@]}" --shards 3
+for threads in 1 4; do missing 1-2,4 "${all[@]}" --threads $threads; done
 run 0 "$trace" "${all[@]}"; traced 3 2; same_dataset whole.exr d.0001.exr
 missing "" "${all[@]}"
 missing "" look.json --frames 0-4 -o 'd.####.exr'
@@ -112,6 +118,29 @@ for signal in TERM INT; do
   [ -z "$(ls l.*partial* l.*part-* 2>/dev/null)" ] || fault "parts are left: $(ls l.*)"
 done
 run 0 "$trace" long.json --frame "$there" -q -o one.exr; same_dataset one.exr "l.$(printf %03d "$there").exr"
+# A signal may come several times, from a batch system and from who passes it on: it is the same wish.
+set -m
+"$trace" slow.json --frame 0 -o w.exr --threads 1 -q 2>err & job=$!
+set +m
+sleep 0.2
+for signal in TERM TERM INT; do kill -$signal $job; sleep 0.1; done
+wait $job; expect "status after three signals in a row" $? 3
+run 0 "$info" w.partial.exr --verify
+# A second later it means: at once. Reading a pipe into which nobody writes does not stop by itself.
+mkfifo w.0.exr
+"$trace" s.json --frames 0-4 -o 'w.#.exr' --missing & job=$!
+sleep 0.2
+kill -TERM $job; sleep 1.2; kill -TERM $job; sleep 0.3; kill -KILL $job 2>/dev/null
+wait $job; expect "status after a late second signal" $? 143
+# --missing stops too, and then says nothing: half a list would be taken for the whole.
+"$trace" s.json --frames 0-4 -o 'w.#.exr' --missing --threads 1 >out & job=$!
+exec 7<>w.0.exr
+sleep 0.2
+kill -TERM $job; sleep 0.1; echo "no dataset" >&7
+wait $job; expect "status of --missing after SIGTERM" $? 3
+expect "what it says" "$(cat out)" ""
+exec 7>&-
+rm w.*
 # A partial file of another scene does not hinder.
 cp d.0000.exr e.1.partial.exr
 run 0 "$trace" s.json --frame 1 -o 'e.#.exr'; traced 1 0; same_dataset e.1.exr d.0001.exr

@@ -56,7 +56,7 @@ std::string stored_file_hash(int descriptor, std::uint64_t place) {
   return out;
 }
 
-std::string compute_file_hash(int descriptor, std::uint64_t place) {
+std::string compute_file_hash(int descriptor, std::uint64_t place, unsigned threads) {
   const auto size = static_cast<std::uint64_t>(std::max<off_t>(::lseek(descriptor, 0, SEEK_END), 0));
   const std::uint64_t blocks = (size + kBlock - 1) / kBlock;
   std::vector<std::string> digests(blocks);
@@ -72,8 +72,9 @@ std::string compute_file_hash(int descriptor, std::uint64_t place) {
     }
   };
   std::vector<std::future<void>> others;
-  const std::uint64_t threads = std::min<std::uint64_t>(std::thread::hardware_concurrency(), blocks);
-  for (std::uint64_t i = 1; i < threads; ++i) others.push_back(std::async(std::launch::async, work));
+  const std::uint64_t wanted = threads > 0 ? threads : std::thread::hardware_concurrency();
+  for (std::uint64_t i = 1; i < std::min(wanted, blocks); ++i)
+    others.push_back(std::async(std::launch::async, work));
   work();
   for (auto& other : others) other.get();
   Sha256 all;

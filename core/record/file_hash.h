@@ -14,8 +14,8 @@ namespace nullcone {
 std::optional<std::uint64_t> find_file_hash(int descriptor);
 /// The digits that stand there.
 std::string stored_file_hash(int descriptor, std::uint64_t place);
-/// What they should be.
-std::string compute_file_hash(int descriptor, std::uint64_t place);
+/// What they should be. `threads`: 0 for one a core.
+std::string compute_file_hash(int descriptor, std::uint64_t place, unsigned threads = 0);
 
 /// Where `text` stands in the first `within` bytes of an open file.
 std::optional<std::uint64_t> find_text(int descriptor, std::string_view text, std::uint64_t within);

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""nullcone-submit --local, in the same trouble as with Slurm, but without one; and who may work in a folder.
+
+Usage: local_test.py TOOLS_DIR SOURCE_DIR [SCENARIO...]   (all of them; their names are those of the functions here)
+"""
+import collections
+import concurrent.futures
+import os
+import signal
+import subprocess
+import sys
+import time
+
+from cluster_trouble import fill, small_disk
+from slurm_cluster import Checks, Workplace, kill, waited
+
+HERE = ["--local", "--jobs", "2", "--retry-delay", "0"]
+NO_SLURM = {"PATH": "/nowhere"}
+
+
+def start(place, tools, folder, *options):
+    return subprocess.Popen([tools / "nullcone-submit", place.sequence, "-o", folder, *HERE, *options], text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **NO_SLURM})
+
+
+def ended(place, child, status, text=""):
+    """It ends in time, so, and says so."""
+    try:
+        out, error = child.communicate(timeout=60)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.communicate()
+        return place.check(False, "a submission does not end")
+    return place.check(child.returncode == status and text in error, f"status {child.returncode}, expected {status}: {error[-400:]!r}")
+
+
+def frames(folder):
+    return len(list(folder.glob("data.????.exr")))
+
+
+def undisturbed(place):
+    tools, folder = place.tools("plain"), place.root / "plain"
+    for calls in (place.FRAMES, 0):
+        ended(place, start(place, tools, folder), 0)
+        place.whole(folder, "undisturbed")
+        place.check.equal("undisturbed: calls", len(place.calls(tools)), calls)
+        (tools / "calls").unlink()
+        (tools / "calls").touch()
+    folder = place.root / "it's %d"
+    ended(place, start(place, place.bin, folder, "--shards", "3", "--frames", "2-6", "--quiet"), 0)
+    place.whole(folder, "shards", {frame: place.reference()[frame] for frame in range(2, 7)})
+
+
+def kills(place):
+    tools, folder = place.tools("kills", "sleep 0.1"), place.root / "kills"
+    child = start(place, tools, folder, "--tries", "50")
+    hits = collections.Counter()
+    end = time.monotonic() + 20
+    while child.poll() is None and time.monotonic() < end and hits.total() < 20:
+        time.sleep(place.random.uniform(0, 0.2))
+        processes = sorted(place.processes("/nullcone-trace", folder))
+        number = place.random.choice([signal.SIGKILL, signal.SIGTERM])
+        hits[number.name] += bool(processes and kill(place.random.choice(processes), number))
+    print("  hits:", dict(hits))
+    place.check(min(hits["SIGKILL"], hits["SIGTERM"]) > 3, f"kills: {hits} only")
+    ended(place, child, 0)
+    place.whole(folder, "kills")
+
+
+def stopped(place):
+    """SIGTERM and SIGINT to the submitter end all soon; SIGKILL too; the same command goes on."""
+    slow, folder = place.root / "slow", place.root / "stopped"
+    tools = place.tools("stopped", f"[ ! -e {slow} ] || {{ echo >>{slow}; sleep 20; }}")
+    for number, status in [(signal.SIGTERM, 3), (signal.SIGINT, 3), (signal.SIGKILL, -9)]:
+        there = frames(folder)
+        child = start(place, tools, folder)
+        place.check(waited(lambda: frames(folder) >= there + 3), f"stopped: nothing begins before {number.name}")
+        slow.touch()  # all that begin now would take long
+        place.check(waited(lambda: slow.stat().st_size == 2), "stopped: nobody is at work")
+        child.send_signal(number)
+        begun = time.monotonic()
+        ended(place, child, status, "interrupted; the same command goes on" if status == 3 else "")
+        place.check(waited(lambda: not place.processes("/nullcone-trace", folder), 3), f"{number.name}: processes are left")
+        place.check(time.monotonic() - begun < 3, f"{number.name}: ends late")
+        slow.unlink()
+    place.check(0 < frames(folder) < place.FRAMES, "stopped: all frames are there already")
+    ended(place, start(place, tools, folder), 0)
+    place.whole(folder, "stopped")
+    calls = collections.Counter(frame for _, frame in place.calls(tools))
+    place.check(calls.total() == place.FRAMES + 3 * 2, f"stopped: frames were traced again: {calls}")
+
+
+def full_disk(place):
+    tools = place.tools("disk", "sleep 0.1")
+    with small_disk(place) as mounted:
+        if mounted is None:
+            return
+        folder = mounted / "disk"
+        child = start(place, tools, folder, "--tries", "9")
+        place.check(waited(lambda: frames(folder) >= 3), "disk: nothing begins")
+        filler = fill(mounted)
+        calls = len(place.calls(tools))
+        place.check(waited(lambda: len(place.calls(tools)) > calls + 4), "disk: nothing is tried")
+        place.check(frames(folder) < place.FRAMES, "disk: it was not full")
+        filler.unlink()
+        child.communicate(timeout=60)  # where it found no room for its plan it has ended
+        place.check(child.returncode in (0, 1), f"disk: status {child.returncode}")
+        ended(place, start(place, tools, folder), 0)
+        place.whole(folder, "disk")
+
+
+def hopeless(place):
+    tools = place.tools("hopeless", '[ "$frame" != 5 ] || { echo "no such star" >&2; exit 1; }\n'
+                                    '[ "$frame" != 6 ] || kill -KILL $$')
+    folder = place.root / "hopeless"
+    ended(place, start(place, tools, folder), 1, "no such star")
+    calls = collections.Counter(frame for _, frame in place.calls(tools))
+    place.check.equal("hopeless: tries", calls, collections.Counter({**dict.fromkeys(range(place.FRAMES), 1), 5: 3, 6: 3}))
+    place.check.equal("hopeless: missing", place.missing(folder), "5-6")
+    text = (folder / "cluster/failed.txt").read_text()
+    place.check("frame 5: failed 3 times" in text and "frame 6: failed 3 times" in text and "signal 9" in text, f"failed.txt: {text!r}")
+    ended(place, start(place, place.bin, folder), 0)
+    place.whole(folder, "hopeless")
+
+
+def locks(place):
+    """Who lives is not disturbed, also on another host; who is dead, or long gone, blocks nobody."""
+    folder, other = place.root / "locks", place.root / "elsewhere"
+    lock = folder / "cluster/lock"
+    submit = lambda where: ("nullcone-submit", place.sequence, "-o", where, "--frames", "0-1", *HERE)
+    child = start(place, place.tools("locks", "sleep 60"), folder)
+    place.check(waited(lock.exists) and waited(lambda: place.processes("/nullcone-trace", folder)), "locks: nothing begins")
+    text = lock.read_text()
+    lines = text.splitlines()
+    place.check(lines[0] == os.uname().nodename and lines[1] == str(child.pid), f"a lock says {text!r}")
+    foreign = "\n".join(["elsewhere", lines[1], "another-start/1", *lines[3:]]) + "\n"
+    (other / "cluster").mkdir(parents=True)
+    (other / "cluster/lock").write_text(foreign)
+    with concurrent.futures.ThreadPoolExecutor() as both:  # each has some seconds of patience
+        both.submit(place.refused, 1, f"process {child.pid} on {os.uname().nodename}", *submit(folder))
+        both.submit(place.refused, 1, "on elsewhere", *submit(other))
+    place.check(child.poll() is None and lock.read_text() == text, "locks: the holder was disturbed")
+    child.kill()
+    child.communicate()
+    place.check(waited(lambda: not place.processes("/nullcone-trace", folder), 3), "locks: processes are left")
+    place.check(lock.exists(), "locks: a process that was killed leaves no lock")
+
+    for what, old in [("of a dead process", text), ("of another host", foreign), ("torn", text[:3]), ("empty", ""), ("of nobody", "\0\n" * 9)]:
+        lock.write_text(old)
+        if what != "of a dead process":
+            os.utime(lock, (time.time() - 3600,) * 2)
+        begun = time.monotonic()
+        place.run(*submit(folder))
+        place.check(time.monotonic() - begun < 5, f"a lock {what} blocks")
+        place.check(not lock.exists(), f"a lock {what} is left")
+        lock.unlink(missing_ok=True)
+        (folder / "data.0001.exr").unlink(missing_ok=True)
+    place.run(*submit(folder))
+    place.check.equal("locks: beside them", sorted(path.name for path in lock.parent.glob("lock*")), [])
+    place.whole(folder, "locks", {frame: place.reference()[frame] for frame in range(2)})
+
+
+SCENARIOS = {scenario.__name__: scenario for scenario in [undisturbed, kills, stopped, full_disk, hopeless, locks]}
+
+
+def main():
+    tools, source, *names = sys.argv[1:]
+    if unknown := [name for name in names if name not in SCENARIOS]:
+        sys.exit(f"no scenario {unknown[0]}; expected {', '.join(SCENARIOS)}")
+    checks = Checks()
+    place = Workplace(tools, source, checks)
+    try:
+        for name in names or SCENARIOS:
+            begun, faults = time.monotonic(), len(checks.faults)
+            SCENARIOS[name](place)
+            print(f"{name}: {time.monotonic() - begun:.1f} s, {len(checks.faults) - faults} faults", flush=True)
+    finally:
+        place.close()
+    print(f"{checks.count} checks, {len(checks.faults)} faults")
+    sys.exit(bool(checks.faults))
+
+
+if __name__ == "__main__":
+    main()
