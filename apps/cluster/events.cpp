@@ -127,7 +127,7 @@ void EventLog::end(Attempt& attempt) const {
 }
 
 void EventLog::append(const std::string& line) const {
-  const Descriptor file(path_, O_WRONLY | O_CREAT | O_APPEND);
+  const Descriptor file(path_, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   const std::string text = "\n" + line + "\n";                               // after a torn line, too
   if (file && ::write(file.number(), text.data(), text.size()) < 0) return;  // the dataset itself tells
 }
@@ -135,7 +135,9 @@ void EventLog::append(const std::string& line) const {
 std::vector<Attempt> read_attempts(const Folder& folder, int first_round, int last_round) {
   std::vector<Attempt> out;
   for (int round = first_round; round <= last_round; ++round) read_events(folder, round, out);
-  std::ranges::stable_sort(out, {}, &Attempt::begun);
+  std::ranges::stable_sort(out, {}, [](const Attempt& attempt) {  // clocks of hosts differ, rounds do not
+    return std::pair(attempt.round, attempt.begun);
+  });
   return out;
 }
 

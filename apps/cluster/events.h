@@ -41,7 +41,7 @@ class EventLog {
   int round_;
 };
 
-/// All attempts of a run of rounds, in the order of their beginnings.
+/// All attempts of a run of rounds, round by round in the order of their beginnings.
 std::vector<Attempt> read_attempts(const Folder& folder, int first_round, int last_round);
 
 /// The last lines of what an attempt said, at most so many; empty without a log.

@@ -54,7 +54,7 @@ void work(const Folder& folder, const Round& round, int worker, std::atomic<std:
   const std::string name = "local-" + std::to_string(worker);
   const EventLog events(folder, round.number, name);
   const std::string path = folder.bundle(round.number, name + ".log");
-  const Descriptor log(path, O_WRONLY | O_CREAT | O_APPEND);
+  const Descriptor log(path, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   for (std::size_t i = 0; !stop_wanted && (i = next++) < round.pieces.size();) try {
       talk.done(trace_piece(folder, round.settings, round.pieces[i], events,
                             log ? log.number() : STDERR_FILENO, stopped));

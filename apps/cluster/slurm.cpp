@@ -101,6 +101,14 @@ bool any_active(const std::vector<std::string>& jobs) {
   });
 }
 
+std::vector<std::string> held_tasks(const std::vector<std::string>& jobs) {
+  std::vector<std::string> out;
+  for (const std::string& job : jobs)
+    for (const auto& [index, task] : tasks_of(job))
+      if (task.held()) out.push_back(index == kNoIndex ? job : job + "_" + std::to_string(index));
+  return out;
+}
+
 std::map<int, Task> tasks_of(const Folder& folder, int round) {
   std::map<int, Task> out;
   for (const Jobs::Array& array : read_jobs(folder.round(round, "jobs")).arrays)

@@ -45,6 +45,8 @@ struct Task {
 inline constexpr int kNoIndex = -1;
 std::map<int, Task> tasks_of(const std::string& job);
 bool any_active(const std::vector<std::string>& jobs);
+/// Of these jobs, the tasks that wait until somebody releases them: "12_3", as scontrol names them.
+std::vector<std::string> held_tasks(const std::vector<std::string>& jobs);
 
 /// Whether tasks of the round were cancelled before they began.
 bool cancelled_waiting(const Folder& folder, int round);

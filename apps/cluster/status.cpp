@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "apps/cluster/lock.h"
@@ -97,6 +99,11 @@ void add_work(Status& out, const Folder& folder, const Round& round, const std::
   std::erase_if(waiting, [&](int frame) { return done.contains(frame) || running.contains(frame); });
   out.running = static_cast<int>(running.size()), out.failed = static_cast<int>(failed.size());
   out.waiting = static_cast<int>(waiting.size());
+  for (int number = 1; number <= round.number; ++number) {
+    if (std::filesystem::exists(folder.round(number, "over"))) continue;
+    std::ranges::copy(held_tasks(read_jobs(folder.round(number, "jobs")).ids()),
+                      std::back_inserter(out.held));
+  }
   out.working = here || !queued.empty() || any_active(read_jobs(folder.round(round.number, "jobs")).ids()) ||
                 any_active(read_jobs(folder.cluster("pictures.jobs")).ids());
 }

@@ -34,6 +34,7 @@ struct Status {
   double per_minute = 0;    ///< frames; 0 if not known
   double left_s = 0;        ///< at that rate
   std::vector<SlowFrame> slowest;
+  std::vector<std::string> held;  ///< tasks that wait for `scontrol release`
   std::map<std::string, HostStatus> hosts;
 };
 

@@ -45,6 +45,11 @@ std::string status_text(const Folder& folder, const Status& s) {
   if (s.pictures >= 0) out << ", " << s.pictures << " pictures";
   if (s.tries_failed > 0) out << ", " << s.tries_failed << " tries failed";
   out << "\n";
+  if (!s.held.empty()) {
+    out << s.held.size() << " held, until somebody says: scontrol release";
+    for (std::size_t i = 0; i < std::min<std::size_t>(s.held.size(), 8); ++i) out << " " << s.held[i];
+    out << (s.held.size() > 8 ? " …" : "") << "\n";
+  }
   if (s.per_minute > 0) out << "rate " << fixed(s.per_minute, 1) << " frames/min";
   if (s.per_minute > 0 && s.working && s.done < s.frames) out << ", " << duration(s.left_s) << " left";
   if (s.per_minute > 0) out << "\n";
@@ -82,6 +87,7 @@ std::string status_json(const Status& s) {
                       {"core_seconds", s.core_seconds},
                       {"frames_per_minute", s.per_minute},
                       {"seconds_left", s.left_s},
+                      {"held", s.held},
                       {"slowest", slowest},
                       {"hosts", hosts}}
       .dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -69,7 +69,7 @@ void trace_trial(const Folder& folder, const Round& round, bool quiet) {
   folder.create(round.number);
   const EventLog events(folder, round.number, "trial");
   const std::string path = folder.bundle(round.number, "trial.log");
-  const Descriptor log(path, O_WRONLY | O_CREAT | O_APPEND);
+  const Descriptor log(path, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   if (!log) throw WorkError(path, "cannot write there");
   const auto [frame, shard] = piece_of(round.pieces.front(), round.settings.shards);
   if (!quiet) std::fprintf(stderr, "tracing frame %d here, to see what it takes\n", frame);
@@ -176,6 +176,7 @@ int submit(const SubmitOptions& options) {
 
 int finish_round(const Folder& folder, int number, int threads) {
   catch_stop_signals();
+  refuse_unknown(folder);
   constexpr std::array kPauses_s = {10, 60, 300};  // a scheduler that is away, a disk that is full
   for (std::size_t i = 0;; ++i) try {
       return finish_once(folder, number, threads);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "apps/cluster/start_jobs.h"
 #include "apps/cluster/status.h"
@@ -102,6 +105,23 @@ void check_given(const CLI::App& app) {
                          "is empty; expected a value");
 }
 
+/// The other work that is asked for, empty for SCENE; options that do not belong to it are refused.
+std::string other_work(const CLI::App& app) {
+  const std::map<std::string, std::set<std::string>> works = {
+      {"status", {"json", "watch"}}, {"cancel", {}}, {"task", {"round", "bundle"}}, {"finish", {"round"}}};
+  std::string work;
+  for (const auto& [name, options] : works)
+    if (app.count("--" + name) > 0 && std::exchange(work, name) != "")
+      refuse("command line", "expected one of SCENE, --status and --cancel");
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || work.empty()) continue;
+    const std::string name = option->get_positional() ? "SCENE" : option->get_lnames().front();
+    if (name == work || name == "threads" || name == "quiet" || works.at(work).contains(name)) continue;
+    throw InputError(name == "SCENE" ? name : "--" + name, "does not go with --" + work);
+  }
+  return work;
+}
+
 /// What is wrong, or is completed, before any work.
 void prepare(SubmitOptions& options, int threads) {
   namespace fs = std::filesystem;
@@ -121,14 +141,11 @@ void prepare(SubmitOptions& options, int threads) {
 
 int work(Options& options, const CLI::App& app) {
   check_given(app);
-  const int others =
-      !options.status.empty() + !options.cancel.empty() + !options.task.empty() + !options.finish.empty();
-  if (others > 1 || (others == 1 && (!options.submit.scene.empty() || !options.submit.output.empty())))
-    refuse("command line", "expected one of SCENE, --status and --cancel");
-  if (!options.status.empty()) return show_status(Folder(options.status), options.watch_s, options.json);
-  if (!options.cancel.empty()) return cancel(Folder(options.cancel));
-  if (!options.task.empty()) return trace_bundle(Folder(options.task), options.round, options.bundle);
-  if (!options.finish.empty())
+  const std::string other = other_work(app);
+  if (other == "status") return show_status(Folder(options.status), options.watch_s, options.json);
+  if (other == "cancel") return cancel(Folder(options.cancel));
+  if (other == "task") return trace_bundle(Folder(options.task), options.round, options.bundle);
+  if (other == "finish")
     return finish_round(Folder(options.finish), options.round, std::max(options.common.threads, 1));
   prepare(options.submit, options.common.threads);
   options.submit.quiet = options.common.quiet;

@@ -73,7 +73,7 @@ int trace_bundle(const Folder& folder, int number, int bundle) {
                                      std::to_string(round.bundles - 1));
   const EventLog events(folder, number, std::to_string(bundle));
   const std::string name = folder.bundle(number, std::to_string(bundle) + ".log");
-  const Descriptor log(name, O_WRONLY | O_CREAT | O_APPEND);
+  const Descriptor log(name, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   if (!log) throw WorkError(name, "cannot write there");
   bool all = true;
   for (const std::int64_t piece : round.bundle(bundle)) {

@@ -170,6 +170,24 @@ def cancel(place, slurm):
     place.whole(folder, "cancel")
 
 
+def held(place, slurm):
+    """Tasks that somebody must release are told, with the words that release them."""
+    folder = place.root / "held"
+    submit = ("nullcone-submit", place.sequence, "-o", folder, "--frames", "0-1", "--trial", "none", "--per-task", "1")
+    place.run(*submit, "--sbatch=--hold")
+    told = place.run("nullcone-submit", "--status", folder).stdout
+    line = next((line for line in told.splitlines() if "scontrol release" in line), "")
+    place.check(line.startswith("3 held"), f"held: status tells {told!r}")
+    tasks = line.partition("scontrol release ")[2].split()
+    place.check.equal("held: as JSON", json.loads(place.run("nullcone-submit", "--status", folder, "--json").stdout)["held"], tasks)
+    place.check("jobs that wait" in place.run(*submit).stdout, "held: submitted again")
+    for task in tasks:
+        place.run("scontrol", "release", task)
+    slurm.over(folder)
+    place.whole(folder, "held", {frame: place.reference()[frame] for frame in range(2)})
+    place.check("held" not in place.run("nullcone-submit", "--status", folder).stdout.partition("\n")[2], "held: still held")
+
+
 def single(place, slurm):
     """A scene of one frame, in shards."""
     scene = json.loads((place.source / "scenes/goedel_earth.json").read_text())
@@ -225,19 +243,19 @@ def wrong_input(place, slurm):
             ("--frames", *submit, "--frames", ""), ("shards", *submit, "--shards", "151"), ("--shards", *submit, "--shards", "0"),
             ("--shards", *submit, "--shards", "1e3"), ("--threads", *submit, "--threads", "-1"), ("--tries", *submit, "--tries", "0"),
             ("--per-task", *submit, "--per-task", "0"), ("--retry-delay", *submit, "--retry-delay", "-1"),
-            ("--memory", *submit, "--memory", "lots"), ("--time", *submit, "--time", "0"), ("--trial", *submit, "--trial", "there"),
+            ("--memory", *submit, "--memory", "lots"), ("--time", *submit, "--time", "-1"), ("--trial", *submit, "--trial", "there"),
             ("--isa", *submit, "--isa", "mmx"), ("--fps", *submit, "--fps", "0"), ("none.json", *submit, "--look", "none.json"),
             ("--movie", *submit, "--movie", "movie.txt"), ("--jobs", *submit, "--jobs", "2"), ("--json", *submit, "--json"),
             ("--watch", *submit, "--watch"), ("--partition", *submit, "--partition", ""), ("--nonsense", *submit, "--nonsense"),
             ("another", *submit, "another"), ("--dry-run", *submit, "--dry-run", "--scripts-only"), ("--local", *submit, "--local", "--dry-run"),
-            ("command line", *submit, "--status", folder), ("command line", "nullcone-submit", "--status", folder, "--cancel", folder),
+            ("SCENE", *submit, "--status", folder), ("--shards", "nullcone-submit", "--cancel", folder, "--shards", "2"), ("command line", "nullcone-submit", "--status", folder, "--cancel", folder),
             ("wrong", "nullcone-submit", "--status", folder), ("wrong", "nullcone-submit", "--cancel", folder),
             ("--status", "nullcone-submit", "--status", ""), ("file", "nullcone-submit", "--status", plain),
-            ("wrong", "nullcone-submit", "--task", folder, "--round", "1", "--bundle", "0")]:
+            ("wrong", "nullcone-submit", "--task", folder, "--round", "1", "--bundle", "0"),
+            ("wrong", "nullcone-submit", "--finish", folder, "--round", "1")]:
         place.refused(2, text, *words)
         place.check(not folder.exists(), f"{words} writes")
         shutil.rmtree(folder, ignore_errors=True)
-    place.refused(1, "wrong", "nullcone-submit", "--finish", folder, "--round", "1")
     # Slurm's own complaints, and folders that cannot be.
     place.refused(1, "Invalid partition", *submit, "--trial", "none", "--partition", "nowhere")
     place.refused(1, "sbatch", *submit, "--trial", "none", "--sbatch=--nonsense")
@@ -288,4 +306,4 @@ def garbled(place, slurm):
     place.run(*calls[1])
 
 
-SCENARIOS = [undisturbed, shards, again, at_once, dry_run, status, cancel, single, pictures, wrong_input, garbled]
+SCENARIOS = [undisturbed, shards, again, at_once, dry_run, status, cancel, held, single, pictures, wrong_input, garbled]
