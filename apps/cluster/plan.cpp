@@ -135,7 +135,7 @@ Round read_round(const Folder& folder, int number) {
   out.settings = read_settings(root.object("settings"));
   out.scene_sha256 = root.text("scene_sha256");
   out.pieces = read_runs(root.text("pieces"), root);
-  out.bundles = static_cast<int>(root.integer("bundles", 0, kMost));
+  out.bundles = static_cast<int>(root.integer("bundles", out.pieces.empty() ? 0 : 1, kMost));
   out.memory_mb = static_cast<int>(root.integer("memory_mb", 0, kMost));
   out.minutes = static_cast<int>(root.integer("minutes", 0, kMost));
   out.piece_s = root.number("piece_s");
