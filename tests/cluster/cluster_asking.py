@@ -306,6 +306,7 @@ def garbled(place, slurm):
     (folder / "scene.json").write_text("{")
     place.refused(2, "scene.json", *calls[1])
     place.run(*submit)
+    slurm.over(folder)
     place.run(*calls[1])
 
 
