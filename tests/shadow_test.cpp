@@ -22,7 +22,7 @@ FlatObject at_rest(std::uint32_t number, const Vec3<double>& place, const S& sha
 
 TEST(Shadows, NoSurfaceShadesItselfHoweverLongTheWay) {
   // Steps add up to the length but for rounding: what is left must not count as a step of its own.
-  const FlatObject board = at_rest(1, {{0, 0, 0}}, Box{100, 100, 0});
+  const FlatObject board = at_rest(1, {{0, 0, 0}}, AnyShape(Box{100, 100, 0}));
   const double opaque = 1;
   const MarchSetting<Minkowski> march{{{}}, kBalanced, 1e6, &board, 1, {}, 1000, kFar, 0};
   PrinceDormand87<Pack> stepper;
@@ -46,8 +46,8 @@ TEST(Shadows, NoSurfaceShadesItselfHoweverLongTheWay) {
 TEST(Shadows, OfSpheresBoxesAndRectangles) {
   // Between the plane z = 0 and a lamp at (0, 0, 10): a glass sphere, a box, a sheet, and the lamp's globe.
   const std::array<FlatObject, 5> objects = {
-      at_rest(1, {{-3, 0, 5}}, Sphere{1}), at_rest(2, {{3, 0, 5}}, Box{1, 1, 0.5}),
-      at_rest(3, {{0, 3, 5}}, Box{1, 1, 0}), at_rest(4, {{0, 0, 10}}, Sphere{0.5}),
+      at_rest(1, {{-3, 0, 5}}, Sphere{1}), at_rest(2, {{3, 0, 5}}, AnyShape(Box{1, 1, 0.5})),
+      at_rest(3, {{0, 3, 5}}, AnyShape(Box{1, 1, 0})), at_rest(4, {{0, 0, 10}}, Sphere{0.5}),
       at_rest(5, {{0, 0, -50}}, Sphere{50})};
   const std::array<double, 5> opacity = {0.4, 1, 0.3, 1, 1};
   const MarchSetting<Minkowski> march{{{}}, kBalanced, 1e6, objects.data(), 5, {}, 100, kFar, 0};

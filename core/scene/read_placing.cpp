@@ -25,8 +25,9 @@ Triple direction(JsonObject& object, std::string_view key, const std::vector<dou
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-/// Rows x, y, z: z along `z_axis`, y as near to `y_axis` as can be.
-std::array<Triple, 3> directions(JsonObject& object) {
+}  // namespace
+
+std::array<Triple, 3> read_directions(JsonObject& object) {
   const Triple z = direction(object, "z_axis", {0, 0, 1}), wish = direction(object, "y_axis", {0, 1, 0});
   Triple x = cross(wish, z);
   const double length = std::sqrt(dot(x, x));
@@ -34,8 +35,6 @@ std::array<Triple, 3> directions(JsonObject& object) {
   for (double& component : x) component /= length;
   return {x, cross(z, x), z};
 }
-
-}  // namespace
 
 double read_radius(JsonObject& shape) {
   const double out = shape.positive("radius");
@@ -68,7 +67,7 @@ void read_axes(JsonObject& object, Placing& placing) {
     placing.gyroscope_axes =
         object.word("axes", {"gyroscope", "static"},
                     placing.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
-  placing.axes = directions(object);
+  placing.axes = read_directions(object);
 }
 
 Placing read_placing(JsonObject placing) {

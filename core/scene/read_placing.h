@@ -27,6 +27,9 @@ Triple read_velocity(JsonObject& object, std::string_view key);
 /// The entry `worldline` of something local.
 Worldline read_worldline(JsonObject& object);
 
+/// The entries `z_axis` and `y_axis`, which may be left out: rows x, y, z; y as near to `y_axis` as can be.
+std::array<Triple, 3> read_directions(JsonObject& object);
+
 /// The entries `axes` (of something local), `z_axis` and `y_axis`, which may all be left out.
 void read_axes(JsonObject& object, Placing& placing);
 

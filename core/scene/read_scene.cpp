@@ -13,6 +13,7 @@
 #include "core/scene/read_lights.h"
 #include "core/scene/read_placing.h"
 #include "core/scene/read_records.h"
+#include "core/scene/read_shape.h"
 #include "core/scene/sequence.h"
 
 namespace nullcone {
@@ -95,30 +96,6 @@ Camera read_camera(JsonObject camera) {
          camera.number_or("elevation_deg", 0, -90, 90) * kRadians,
          camera.number_or("roll_deg", 0, -1e6, 1e6) * kRadians);
   camera.finish();
-  return out;
-}
-
-Shape read_shape(JsonObject shape, const MetricDescription& metric) {
-  Shape out;
-  const std::string type = shape.word("type", {"sphere", "quad", "box", "sky"});
-  if (type == "sphere") {
-    out.type = ShapeType::sphere;
-    out.radius = read_radius(shape);
-    out.dome = shape.boolean("dome", false);
-  } else if (type == "quad" || type == "box") {
-    out.type = type == "quad" ? ShapeType::quad : ShapeType::box;
-    const auto edges = shape.numbers("edges", type == "quad" ? 2 : 3, 1e-300, kLargest);
-    std::ranges::copy(edges, out.edges.begin());
-  } else {
-    out.type = ShapeType::sky;
-    out.sky = shape.has("side") ? static_cast<unsigned>(shape.integer("side", 1, 2)) : 1;
-    if (out.sky > static_cast<unsigned>(std::max(metric.skies, 1)))
-      shape.refuse("side", "the spacetime '" + std::string(metric.name) + "' has only one sky");
-    if (metric.skies == 0)
-      shape.refuse("type", "the spacetime '" + std::string(metric.name) +
-                               "' has no infinity to hold a sky; use a sphere with \"dome\": true");
-  }
-  shape.finish();
   return out;
 }
 

@@ -1,6 +1,7 @@
 // The search for crossings along closed-form paths: one object after the other, for all rays of a band.
 #pragma once
 
+#include "core/trace/any_shape.h"
 #include "core/trace/band.h"
 #include "core/trace/with_type.h"
 
@@ -15,10 +16,11 @@ struct Placed {
 };
 template <class M>
 using AnyPlaced =
-    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, Box>,
-                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, Box>,
+    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, AnyShape>,
+                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, AnyShape>,
                  Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
-                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>, Placed<MovingPlacing<M>, LocalBody<M>, Box>>;
+                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
+                 Placed<MovingPlacing<M>, LocalBody<M>, AnyShape>>;
 
 /// Lists the rays that come near the object's bounding ball at all.
 template <class S, class Placing>

@@ -45,7 +45,7 @@ std::array<Vec3<S>, 2> across(const Vec3<S>& n) {
 template <class S, class Body, class Shape>
 void find_directions(const Crossed<S>& c, const Body& body, const Shape& shape, Detailed<S>& out) {
   using D = Dual<S, 2>;
-  const Vec3<S> normal = shape.normal(c.here.X);
+  const Vec3<S> normal = surface_near(shape, c.here.X).normal(c.here.X);
   const auto [a, b] = across(normal);
   const auto X = Vec3<D>::map([&](std::size_t i) { return D(c.here.X[i], Vec<S, 2>{{a[i], b[i]}}); });
   const Vec4<D> event = body.event(D(c.here.tau), X);
@@ -90,8 +90,9 @@ std::array<S, 4> change_of_uv(const Crossed<S>& c, const Body& body, const Shape
     return D(c.at.event[i], Vec<S, 4>{{change[0][i], change[1][i], c.at.tangent[i], S(0.0)}});
   });
   const std::pair<D, Vec3<D>> seen = body.local(x, D::variable(c.here.tau, 3));
-  const D &late = seen.first, f = shape.value(seen.second);
-  const Vec<D, 2> uv = shape.uv(seen.second);
+  const auto surface = surface_near(shape, c.here.X);
+  const D &late = seen.first, f = surface.value(seen.second);
+  const Vec<D, 2> uv = surface.uv(seen.second);
   const S over = S(1.0) / (late.d[2] * f.d[3] - late.d[3] * f.d[2]);
   std::array<S, 4> out;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -38,18 +38,16 @@ ShadowTrail<S> shadow_trail(const MarchObject<M>& object, const Phase<S>& at, co
   return with_type(object.marched, [&](const auto& marched) {
     const auto& shape = marched.shape;
     const Located<S> here = marched.map.locate(at.x, rate.x);
-    bool flat = false;
-    if constexpr (requires { shape.flat(); }) flat = shape.flat();
-    const S way_out(shape.starts_inside() ? -1.0 : 1.0);
+    const S sheet(shape.is_sheet() ? 1.0 : 0.0);
     ShadowTrail<S> out;
     out.alongside.after = S(0.0);
     if (own) {
-      const auto outwards = way_out * dot(shape.normal(here.X), here.slope) > S(0.0);
+      const auto outwards = dot(shape.outward(here.X), here.slope) > S(0.0);
       out.alongside.side = S(-1.0);
-      out.is_free = outwards | (S(flat ? 1.0 : 0.0) > S(0.0));
+      out.is_free = outwards | (sheet > S(0.0));
     } else {
-      const auto inside = way_out * shape.value(here.X) < S(0.0);
-      out.alongside.side = flat ? S(1.0) : select(inside, S(-1.0), S(1.0));
+      const auto inside = shape.holds(here.X);
+      out.alongside.side = select(inside, S(-1.0), S(1.0));
       out.is_free = inside & !inside;
     }
     return out;

@@ -1,6 +1,7 @@
 // Objects among integrated rays: where a ray is in their frame, and where a step first meets them.
 #pragma once
 
+#include "core/trace/any_shape.h"
 #include "core/trace/curve.h"
 #include "core/trace/objects.h"
 #include "core/trace/with_type.h"
@@ -131,14 +132,15 @@ struct Marched {
 };
 template <Metric M, bool = HasIsometry<M>>
 struct AnyMarched {
-  using Type = std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Box>,
-                            Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, Box>>;
+  using Type =
+      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, AnyShape>,
+                   Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, AnyShape>>;
 };
 template <Metric M>
 struct AnyMarched<M, true> {
   using Type =
-      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, Box>,
-                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, Box>>;
+      std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, AnyShape>,
+                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, AnyShape>>;
 };
 
 template <Metric M>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "core/trace/any_shape.h"
 #include "core/trace/crossing.h"
 #include "core/trace/spacetime.h"
 
@@ -52,10 +53,10 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
     return "is too large: parts of it would have to move faster than light";
   const double tau = local_time(body, observer, body.first_guess(observer));
   if (!shape.hides(body.local(observer, tau).second)) return nullptr;
-  if (described.type == ShapeType::quad) return "holds the observer in its surface";
-  if (described.type == ShapeType::box) return "holds the observer; a box is seen from outside";
+  const bool open = described.type == ShapeType::solid && !described.solid->closed();
+  if (open || described.type == ShapeType::quad) return "holds the observer in its surface";
   return described.dome ? "is a dome, but the observer stands outside it"
-                        : "holds the observer; a sphere that is seen from inside needs \"dome\": true";
+                        : "holds the observer; what is seen from inside needs \"dome\": true";
 }
 
 /// Whether an event, in the chart of the body, is inside of a shape that is seen from outside.
@@ -83,11 +84,16 @@ LocalBody<M> local_body(const M& metric, const Vec4<double>& start, const Placin
   return {frame, make_orbit(frame, ball)};
 }
 
-/// Calls f with the shape in its own type. A quad is a box without height: one search for both.
+/// Calls f with the shape in a type of the kernel. A quad is a box without height: one search for both. The
+/// shape must outlive what f makes of it.
 template <class F>
 decltype(auto) with_shape(const Shape& shape, F&& f) {
   if (shape.type == ShapeType::sphere) return f(Sphere{shape.radius, shape.dome});
-  return f(Box{0.5 * shape.edges[0], 0.5 * shape.edges[1], 0.5 * shape.edges[2]});
+  if (shape.type != ShapeType::solid)
+    return f(AnyShape(Box{0.5 * shape.edges[0], 0.5 * shape.edges[1], 0.5 * shape.edges[2]}));
+  const Solid& solid = *shape.solid;
+  return f(AnyShape(
+      SolidShape{solid.primitives.data(), solid.steps.data(), solid.steps.size(), solid.ball, shape.dome}));
 }
 
 NULLCONE_KERNEL_END

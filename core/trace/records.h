@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/status.h"
+#include "core/trace/any_shape.h"
 #include "core/trace/crossing.h"
 #include "core/trace/crossings.h"
 #include "core/trace/spacetime.h"
@@ -37,7 +38,10 @@ struct Crossed {
 template <class S, Metric M, class Path, class Body, class Shape, class SceneEvent>
 Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, const Shape& shape,
                            const S& found, const SceneEvent& scene_event) {
-  const Meeting<S> here = polish(path, body, shape, found);
+  const Vec4<S> near = path.at(found).event;
+  const auto surface =
+      surface_near(shape, body.local(near, local_time(body, near, body.first_guess(near))).second);
+  const Meeting<S> here = polish(path, body, surface, found);
   const PathPoint<S> P = path.at(here.lambda);
   const Matrix4<S> g = metric.g(P.event);
 
@@ -48,11 +52,11 @@ Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, 
   const S length = sqrt(inner(g, u, u)), frequency = -inner(g, P.tangent, u) / length;
 
   // The emission angle: between the photon and the unit normal, on the side to which the photon leaves.
-  const Vec4<S> slope = gradient(body, shape, P.event, static_tetrad(metric, P.event), here.tau);
+  const Vec4<S> slope = gradient(body, surface, P.event, static_tetrad(metric, P.event), here.tau);
   const S steepness =
       sqrt(slope[1] * slope[1] + slope[2] * slope[2] + slope[3] * slope[3] - slope[0] * slope[0]);
   const S rising = dot(slope, P.local), mu = abs(rising) / (frequency * steepness);
-  const auto uv = shape.uv(here.X);
+  const auto uv = surface.uv(here.X);
   const Vec4<S> emitted = scene_event(P.event);
   return {{S(0.0), here.lambda, uv[0], uv[1], S(1.0) / frequency, emitted[0], here.tau, min(mu, S(1.0))},
           here,

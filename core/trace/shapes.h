@@ -15,6 +15,7 @@ struct Sphere {
 
   double bounding_radius() const { return radius; }
   bool starts_inside() const { return from_inside; }
+  bool is_sheet() const { return false; }
 
   /// Zero on the surface, positive on the side from which rays come; quadratic along straight lines.
   template <class S>
@@ -58,6 +59,11 @@ struct Sphere {
   template <class S>
   Vec3<S> normal(const Vec3<S>& X) const {
     return S(from_inside ? -1.0 : 1.0) * normalised(X);
+  }
+
+  template <class S>
+  Vec3<S> outward(const Vec3<S>& X) const {
+    return normalised(X);
   }
 
   /// A step that cannot pass the next surface, for rays that may have met the sphere before and go on inside
