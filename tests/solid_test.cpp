@@ -113,7 +113,7 @@ Tally rays_towards(unsigned seed, bool inside, double smallest, const Make& make
     const RestBody body{placing.axes};
     const Vec4<double> start = {{0, from[0], from[1], from[2]}};
     const auto ray = placing.ray(placing.launch(start), Vec4<double>{{-1, n[0], n[1], n[2]}});
-    compare(oracle, ray, body, shape, 4e-15 * norm(from), 1e-15 * (1 + norm(from)) + 2e-15 * scale, tally);
+    compare(oracle, ray, body, shape, 4e-15 * norm(from), 1e-14 * (1 + norm(from)) + 1e-14 * scale, tally);
   }
   return tally;
 }
