@@ -22,13 +22,14 @@ AnyShape shape_of(const Solid& solid, bool inside) {
 
 struct Tally {
   int rays = 0, hits = 0, missed = 0, invented = 0, misplaced = 0, given_up = 0;
-  double worst = 0;
+  double worst = 0;  ///< over the rounding that is allowed
 
   void expect_clean() const {
     EXPECT_EQ(missed, 0);
     EXPECT_EQ(invented, 0);
     EXPECT_EQ(misplaced, 0);
     EXPECT_EQ(given_up, 0);
+    EXPECT_LT(worst, 0.1);
     EXPECT_GT(rays, kRays / 2);
     EXPECT_GT(hits, rays / 10);
   }
@@ -113,7 +114,7 @@ Tally rays_towards(unsigned seed, bool inside, double smallest, const Make& make
     const RestBody body{placing.axes};
     const Vec4<double> start = {{0, from[0], from[1], from[2]}};
     const auto ray = placing.ray(placing.launch(start), Vec4<double>{{-1, n[0], n[1], n[2]}});
-    compare(oracle, ray, body, shape, 4e-15 * norm(from), 1e-14 * (1 + norm(from)) + 1e-14 * scale, tally);
+    compare(oracle, ray, body, shape, 4e-15 * norm(from), 4e-14 * (1 + norm(from)) + 1e-13 * scale, tally);
   }
   return tally;
 }
@@ -126,9 +127,7 @@ TEST(Solid, BodiesAreMetByRaysFromEverywhere) {
   for (const auto type : {PrimitiveType::ellipsoid, PrimitiveType::cylinder, PrimitiveType::box,
                           PrimitiveType::tube, PrimitiveType::disk}) {
     SCOPED_TRACE(static_cast<int>(type));
-    const Tally tally = rays_towards(static_cast<unsigned>(type) + 1, false, 1e-9, only(type));
-    tally.expect_clean();
-    std::printf("type %d: worst %.2g of the rounding\n", static_cast<int>(type), tally.worst);
+    rays_towards(static_cast<unsigned>(type) + 1, false, 1e-9, only(type)).expect_clean();
   }
 }
 
