@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace nullcone {
@@ -70,6 +71,14 @@ void read_axes(JsonObject& object, Placing& placing) {
   placing.axes = read_directions(object);
 }
 
+void read_spin(JsonObject& object, Placing& placing) {
+  if (!object.has("spin")) return;
+  JsonObject spin = object.object("spin");
+  placing.spin_axis = direction(spin, "axis", {0, 0, 1});
+  placing.spin = spin.number("rate_deg", -kLargest, kLargest) * std::numbers::pi / 180;
+  spin.finish();
+}
+
 Placing read_placing(JsonObject placing) {
   Placing out;
   if (placing.word("type", {"coordinate", "local"}) == "coordinate") {
@@ -79,6 +88,7 @@ Placing read_placing(JsonObject placing) {
   } else {
     out.type = PlacingType::local;
     out.worldline = read_worldline(placing);
+    read_spin(placing, out);
   }
   read_axes(placing, out);
   placing.finish();

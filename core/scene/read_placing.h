@@ -33,6 +33,9 @@ std::array<Triple, 3> read_directions(JsonObject& object);
 /// The entries `axes` (of something local), `z_axis` and `y_axis`, which may all be left out.
 void read_axes(JsonObject& object, Placing& placing);
 
+/// The entry `spin` of something local, which may be left out.
+void read_spin(JsonObject& object, Placing& placing);
+
 /// An object's `placing`.
 Placing read_placing(JsonObject placing);
 

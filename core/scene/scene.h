@@ -76,6 +76,12 @@ struct Placing {
   /// Rows: the object's x, y and z axes in the rest frame (boosted static axes) at proper time 0;
   /// orthonormal.
   std::array<Triple, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  /// Local: it turns about an axis of its own, from these axes at proper time 0.
+  Triple spin_axis = {0, 0, 1};
+  double spin = 0;  ///< radians a unit of proper time
+
+  /// Whether it stands still among static observers.
+  bool rests() const { return worldline.is_static() && !gyroscope_axes && spin == 0; }
 };
 
 struct Object {

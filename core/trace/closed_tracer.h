@@ -19,7 +19,7 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape, 
     return Placed<RestPlacing<M>, ChartBody<M>, Shape>{
         {metric, event, false, axes, wide}, {metric, event, axes}, shape};
 
-  if (placing.worldline.is_static() && !placing.gyroscope_axes)
+  if (placing.rests())
     return Placed<RestPlacing<M>, RestBody, Shape>{{metric, event, true, axes, wide}, {axes}, shape};
 
   // The frame of an object at rest stands in its own chart, at the origin.
@@ -29,7 +29,7 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape, 
     if (rests)
       return Placed<RestPlacing<M>, LocalBody<M>, Shape>{{metric, event, true, axes, wide}, body, shape};
   return Placed<MovingPlacing<M>, LocalBody<M>, Shape>{
-      {body.frame, body.orbit, Shape::isotropic}, body, shape};
+      {body.frame, body.orbit, Shape::isotropic, wide}, body, shape};
 }
 
 template <Metric M>

@@ -82,6 +82,8 @@ class IntegratedTracer final : public Tracer {
       return keep(Marched<FixedMap, ChartBody<M>, S>{{spatial(event), body.axes, 1}, body, shape}, object,
                   number, since, unfit);
     }
+    unfit.reason = "spins; with integrated paths an object must not";
+    if (placing.spin != 0) return false;
     if constexpr (HasIsometry<M>) {
       const LocalBody<M> body = local_body(metric, event, placing, shape.bounding_radius());
       unfit.reason =

@@ -38,6 +38,7 @@ struct LocalFrame {
   bool gyroscope = false;  ///< axes parallel-transported, or tied to the static tetrad
   Precession precession;   ///< set by prepare()
   Matrix3<double> axes = {{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};  ///< rows: the object's axes at tau = 0
+  Precession spin = {};                                              ///< about an axis of its own
 
   template <class S>
   auto worldline() const {
@@ -54,14 +55,21 @@ struct LocalFrame {
 
   /// From the boosted static axes at P(tau) to the object's own axes.
   template <class S>
-  Vec3<S> to_object(const S& tau, Vec3<S> X) const {
+  Vec3<S> to_object(const S& tau, const Vec3<S>& X) const {
+    const Vec3<S> out = to_axes(tau, X);
+    return spin.rate == 0 ? out : spin.rotate(tau, out, -1);
+  }
+  /// The same but for its spin.
+  template <class S>
+  Vec3<S> to_axes(const S& tau, Vec3<S> X) const {
     if (gyroscope) X = precession.rotate(tau, turn_about_e3(conj(worldline<S>().turn(tau)), X), -1);
     return Matrix3<S>{convert<S>(axes[0]), convert<S>(axes[1]), convert<S>(axes[2])} * X;
   }
 
-  /// The event of the point X of the object at its proper time tau.
+  /// The event of a point of the object at its proper time tau.
   template <class S>
-  Vec4<S> event(const S& tau, const Vec3<S>& X) const {
+  Vec4<S> event(const S& tau, const Vec3<S>& of_object) const {
+    const Vec3<S> X = spin.rate == 0 ? of_object : spin.rotate(tau, of_object, 1);
     Vec3<S> rest_position =
         X[0] * convert<S>(axes[0]) + X[1] * convert<S>(axes[1]) + X[2] * convert<S>(axes[2]);
     if (gyroscope)

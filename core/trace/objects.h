@@ -11,7 +11,7 @@ NULLCONE_KERNEL_BEGIN
 /// Objects whose worldlines may start at any of their events, for nothing about them changes with time.
 template <class M>
 bool is_timeless(const Placing& placing) {
-  return is_stationary<M>() && placing.worldline.is_static() && !placing.gyroscope_axes;
+  return is_stationary<M>() && placing.rests();
 }
 
 /// The placing with a timeless worldline starting at the observation's time, so that proper times stay small
@@ -79,7 +79,8 @@ LocalBody<M> local_body(const M& metric, const Vec4<double>& start, const Placin
                       four_velocity(Vec3<double>{placing.worldline.velocity}),
                       placing.gyroscope_axes,
                       {},
-                      axes_of(placing)};
+                      axes_of(placing),
+                      {placing.spin_axis, placing.spin}};
   if (frame.gyroscope) frame.prepare();
   return {frame, make_orbit(frame, ball)};
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/trace/local_frame.h"
-#include "core/trace/sight.h"
+#include "core/trace/shapes.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -99,7 +99,8 @@ template <Metric M>
 struct MovingPlacing {
   LocalFrame<M> frame;
   decltype(make_orbit(std::declval<LocalFrame<M>>(), 0.0)) orbit;
-  bool isotropic;  ///< the shape does not care how the axes turn
+  bool isotropic;   ///< the shape does not care how the axes turn
+  double ball = 0;  ///< bounding radius of the shape, or a little more; of objects that spin
 
   template <class S>
   struct Ray {
@@ -122,16 +123,17 @@ struct MovingPlacing {
       out.slope_min = around.frequency * S(1 / orbit.stretch);
       out.slope_max = around.frequency * S(orbit.stretch);
       out.bend_max = around.frequency * around.frequency * S(orbit.bend);
-      locate(lambda, tau, out);
+      const S tau_slope = locate(lambda, tau, out);
       out.valid = S(kFar);
       if (orbit.farthest < kFar)  // the bounds hold so far around the object
         out.valid = max(S(orbit.farthest) - norm(out.X), S(0.02 * orbit.farthest)) / out.slope_max;
+      if (!placing->isotropic && placing->frame.spin.rate != 0) turn(tau, tau_slope, out);
       return out;
     }
 
-    /// Position and slope in the rest frame: Newton's method for the proper time, and implicit
-    /// differentiation.
-    void locate(const S& lambda, S tau, Sight<S>& out) const {
+    /// Position and slope in the rest frame, but for the spin: Newton's method for the proper time, and
+    /// implicit differentiation. Returns the slope of the proper time.
+    S locate(const S& lambda, S& tau, Sight<S>& out) const {
       const PathPoint<S> P = path.at(lambda);
       using D1 = Dual<S, 1>;
       for (int i = 0; i < 2; ++i) {
@@ -144,12 +146,35 @@ struct MovingPlacing {
       });
       const D2 time(tau, Vec<S, 2>{{S(0.0), S(1.0)}});
       const Vec4<D2> rest = placing->frame.rest(event, time);
-      const Vec3<D2> X = placing->isotropic ? spatial(rest) : placing->frame.to_object(time, spatial(rest));
+      const Vec3<D2> X = placing->isotropic ? spatial(rest) : placing->frame.to_axes(time, spatial(rest));
       const S last_step = -(rest[0].v / rest[0].d[1]), tau_slope = -(rest[0].d[0] / rest[0].d[1]);
       for (std::size_t i = 0; i < 3; ++i) {
         out.X[i] = X[i].v + X[i].d[1] * last_step;
         out.slope[i] = X[i].d[0] + X[i].d[1] * tau_slope;
       }
+      tau = tau + last_step;
+      return tau_slope;
+    }
+
+    /// From how the ray moves along the object's axes to how it moves as the object spins; only within the
+    /// bounding ball, and never further than a part of it and of a turn.
+    void turn(const S& tau, const S& tau_slope, Sight<S>& sight) const {
+      const Precession& spin = placing->frame.spin;
+      const S ball(placing->ball), until = Sphere{placing->ball}.safe_step(sight, S(0.0));
+      const S enters = max(until, S(1e-9) * ball / sight.slope_max);
+      const S reach_now = norm(sight.X);
+      sight.clearance = max(sight.clearance, select(reach_now > S(1 + 1e-9) * ball, enters, S(0.0)));
+      const Vec3<S> axis = convert<S>(spin.axis);
+      sight.X = spin.rotate(tau, sight.X, -1);
+      sight.slope = spin.rotate(tau, sight.slope, -1) - (S(spin.rate) * tau_slope) * cross(axis, sight.X);
+
+      const S rate = S(abs(spin.rate)) * max(abs(tau_slope), sight.slope_max);
+      sight.valid = min(sight.valid, min(S(0.5) * ball / sight.slope_max, S(0.25) / rate));
+      const S reach = reach_now + sight.slope_max * sight.valid, swept = rate * reach;
+      sight.bend_max =
+          sight.bend_max * (S(1.0) + S(abs(spin.rate)) * reach) + rate * (S(2.0) * sight.slope_max + swept);
+      sight.slope_min = max(sight.slope_min - swept, S(0.0));
+      sight.slope_max = sight.slope_max + swept;
     }
   };
   template <class S>
