@@ -61,6 +61,17 @@ class Kernel final : public Spacetime {
     const auto tetrad = NULLCONE_ISA::static_tetrad(make_metric<M>(values), Vec4<double>{event});
     return {tetrad.e[0].c, tetrad.e[1].c, tetrad.e[2].c, tetrad.e[3].c};
   }
+  std::array<Event, 4> observer_tetrad(std::span<const double> values, const Event& event,
+                                       ObserverFrame frame) const override {
+    const auto tetrad = NULLCONE_ISA::observer_tetrad(make_metric<M>(values), Vec4<double>{event}, frame);
+    return {tetrad.e[0].c, tetrad.e[1].c, tetrad.e[2].c, tetrad.e[3].c};
+  }
+  Event connection(std::span<const double> values, const Event& event, const Event& u,
+                   const Event& v) const override {
+    return NULLCONE_ISA::connection(make_metric<M>(values), Vec4<double>{event}, Vec4<double>{u},
+                                    Vec4<double>{v})
+        .c;
+  }
   std::array<Event, 4> metric(std::span<const double> values, const Event& event) const override {
     const auto g = make_metric<M>(values).g(Vec4<double>{event});
     return {g[0].c, g[1].c, g[2].c, g[3].c};

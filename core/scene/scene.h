@@ -23,10 +23,31 @@ enum class ObserverFrame {
   normal,  ///< of the observers at right angles to the surfaces of equal chart time: exist in black holes too
 };
 
+/// How an observer moves, from an event on.
+struct Motion {
+  enum class Type {
+    geodesic,
+    accelerated,  ///< by a constant acceleration along his own axes
+    circular      ///< round the chart's z axis at a constant rate
+  };
+  /// Circular: with `speed` in the static tetrad, as a geodesic, or so that chart time stands still.
+  enum class Pace { speed, free, closed };
+
+  Type type = Type::geodesic;
+  Event event = {0, 0, 0, 0};
+  Triple velocity = {0, 0, 0}, acceleration = {0, 0, 0};
+  Pace pace = Pace::speed;
+  double speed = 0;
+  bool clockwise = false;
+};
+
 struct Observer {
   Event event = {0, 0, 0, 0};
   Triple velocity = {0, 0, 0};  ///< local velocity in the frame, in units of c
   ObserverFrame frame = ObserverFrame::at_rest;
+  bool moves = false;  ///< event and velocity, and the camera's axes, follow from the motion
+  Motion motion;
+  double proper_time = 0;  ///< since the motion's event
 };
 
 /// The Runge-Kutta pairs that integrate rays (core/trace/steppers.h).

@@ -23,8 +23,22 @@ json as_written(double value) {
   return value;
 }
 
+/// The proper time of an observer who moves.
+void set_proper_time(json& scene, double time, const std::string& place) {
+  if (!scene.contains(json::json_pointer("/observer/worldline"))) return;
+  json& entry = scene["observer"]["proper_time"];
+  if (!entry.is_null() && entry != 0)
+    throw InputError(
+        place + ": /observer/proper_time",
+        "is the time of the frame (\"frames\" goes by proper time); expected 0 there, or nothing");
+  entry = as_written(time);
+}
+
 /// The observer's event at the time of the frame.
 void set_time(json& scene, double time, const std::string& place) {
+  if (scene.contains(json::json_pointer("/observer/worldline")))
+    throw InputError(place + ": /frames/time",
+                     "expected \"proper\", for the observer moves along a worldline");
   const json::json_pointer event("/observer/event");
   if (!scene.contains(event)) return;  // the reader of scenes says what is missing
   json& entry = scene[event];
@@ -58,7 +72,10 @@ Frames read_frames(const json& scene, const std::string& place) {
 json scene_at(json scene, const Frames& frames, int frame, const std::string& place) {
   const double time = frames.time(frame);
   scene.erase("frames");
-  if (frames.coordinate) set_time(scene, time, place);
+  if (frames.coordinate)
+    set_time(scene, time, place);
+  else
+    set_proper_time(scene, time, place);
   for (auto& [key, value] : scene.items())
     if (key != "look")
       value = replace_keyframes(

@@ -126,6 +126,12 @@ class Spacetime {
   /// Axes e_0 … e_3 of the static tetrad at an event, in chart components.
   virtual std::array<Event, 4> static_tetrad(std::span<const double> parameters,
                                              const Event& event) const = 0;
+  /// The same of the observers of `frame`.
+  virtual std::array<Event, 4> observer_tetrad(std::span<const double> parameters, const Event& event,
+                                               ObserverFrame frame) const = 0;
+  /// Gamma^mu_ab u^a v^b at an event: what parallel transport along u takes from v.
+  virtual Event connection(std::span<const double> parameters, const Event& event, const Event& u,
+                           const Event& v) const = 0;
   /// Covariant components of g at an event, rows first.
   virtual std::array<Event, 4> metric(std::span<const double> parameters, const Event& event) const = 0;
   /// The geodesic with tangent k (components in the static tetrad, or in that of `frame` where it is

@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/record/memory.h"
+#include "core/trace/follow.h"
 #include "core/trace/gather.h"
 
 namespace nullcone {
@@ -138,6 +139,7 @@ int bands_in_flight(int threads) {
 
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place) {
   const std::vector<double> parameters = parameters_of(spacetime, scene);
+  settle_observer(spacetime, parameters, scene, place);
   if (scene.max_lookback == 0) scene.max_lookback = spacetime.default_lookback(parameters);
   Scene sampled = scene;
   sampled.camera = sample_camera(scene.camera);
