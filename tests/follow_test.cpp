@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/boost.h"
 #include "core/base/error.h"
 #include "core/trace/follow.h"
 #include "metrics/registry.h"

@@ -1,8 +1,7 @@
 #include "core/trace/follow.h"
 
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
-#include <boost/numeric/odeint/stepper/generation/make_controlled.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
 #include <cmath>
 
 #include "core/base/boost.h"
