@@ -1,5 +1,6 @@
 #include "core/trace/follow.h"
 
+#include <algorithm>
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <cmath>
@@ -18,7 +19,8 @@ using host::Vec4;
 using V4 = Vec4<double>;
 
 constexpr std::size_t kSize = 20;
-using State = std::array<double, kSize>;  ///< event, u, and three axes
+using State =
+    std::vector<double>;  ///< event, u, and three axes; GCC 12 takes Odeint's arrays for uninitialised
 
 V4 part(const State& state, std::size_t number) {
   return V4::map([&](std::size_t i) { return state[4 * number + i]; });
@@ -85,7 +87,7 @@ struct Circling {
   void operator()(const State& state, State& rate, double tau) const {
     const auto [x, u] = at(tau);
     const V4 a = acceleration(x, u);
-    rate.fill(0);
+    std::ranges::fill(rate, 0.0);
     for (std::size_t i = 0; i < 3; ++i) {
       const V4 e = part(state, 2 + i);
       put(-(ground.inner(x, a, e) * u) - ground.connection(x, u, e), 2 + i, rate);
@@ -161,7 +163,7 @@ Circling circling(const Ground& ground, const Motion& motion, const std::string&
 State axes_along(const Ground& ground, const V4& x, const V4& u, ObserverFrame frame) {
   const Tetrad<double> tetrad = ground.tetrad(x, frame);
   const V4 local = host::local_components(ground.g(x), tetrad, u);
-  State out{};
+  State out(kSize);
   put(x, 0, out);
   for (std::size_t i = 0; i < 4; ++i) {
     V4 axis{};
