@@ -225,6 +225,9 @@ TEST_F(Include, WhatGrowsWithoutEndIsRefused) {
         return out;
       }() + "]");
   expect_refused(R"([{"include": "laughs.json"}])", "expected at most 64 MiB to be included in all");
+  // Many small things, each of which would be remembered.
+  write("many.json", json(std::vector<json>(1'100'000, json::array())).dump());
+  expect_refused(R"([{"include": "many.json"}])", "expected at most 1000000 entries that stand elsewhere");
   // A gigabyte of nothing, which takes no room on the disk.
   write("huge.json", "");
   fs::resize_file(folder_ + "/huge.json", std::uintmax_t{1} << 30);

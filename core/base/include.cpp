@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20, kLongestChain = 16, kDeepest = 64;
-constexpr int kMostIncludes = 10'000;
+constexpr int kMostIncludes = 10'000, kMostParts = 1'000'000;
 
 bool is_within(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
@@ -49,35 +49,6 @@ std::optional<std::string> text_of(const fs::path& path, std::size_t most) {
 /// An object by the name `include` in a look has an object under that key.
 bool is_include(const json& value) {
   return value.is_object() && value.contains("include") && !value["include"].is_object();
-}
-
-void put(JsonOrigin& origin, const std::string& key, JsonOrigin part) {
-  origin.parts.erase(key);
-  const JsonOrigin usual = origin.part(key);
-  if (part.file != usual.file || part.pointer != usual.pointer || !part.parts.empty())
-    origin.parts.emplace(key, std::move(part));
-}
-
-/// RFC 7386.
-void merge(WholeJson& target, const WholeJson& patch) {
-  if (!target.document.is_object()) target = {json::object(), {patch.origin.file, patch.origin.pointer}};
-  for (const auto& [name, value] : patch.document.items()) {
-    const std::string key = escape_pointer(name);
-    if (value.is_null()) {
-      target.document.erase(name);
-      target.origin.parts.erase(key);
-      continue;
-    }
-    WholeJson part{value, patch.origin.part(key)};
-    if (value.is_object()) {
-      WholeJson old{json(), target.origin.part(key)};
-      if (target.document.contains(name)) old.document = std::move(target.document[name]);
-      merge(old, part);
-      part = std::move(old);
-    }
-    target.document[name] = std::move(part.document);
-    put(target.origin, key, std::move(part.origin));
-  }
 }
 
 class Including {
@@ -148,6 +119,36 @@ class Including {
     return out;
   }
 
+  void put(JsonOrigin& origin, const std::string& key, JsonOrigin part) {
+    origin.parts.erase(key);
+    const JsonOrigin usual = origin.part(key);
+    if (part.file == usual.file && part.pointer == usual.pointer && part.parts.empty()) return;
+    if (++parts_ > kMostParts) refuse("", "expected at most 1000000 entries that stand elsewhere");
+    origin.parts.emplace(key, std::move(part));
+  }
+
+  /// RFC 7386.
+  void merge(WholeJson& target, const WholeJson& patch) {
+    if (!target.document.is_object()) target = {json::object(), {patch.origin.file, patch.origin.pointer}};
+    for (const auto& [name, value] : patch.document.items()) {
+      const std::string key = escape_pointer(name);
+      if (value.is_null()) {
+        target.document.erase(name);
+        target.origin.parts.erase(key);
+        continue;
+      }
+      WholeJson part{value, patch.origin.part(key)};
+      if (value.is_object()) {
+        WholeJson old{json(), target.origin.part(key)};
+        if (target.document.contains(name)) old.document = std::move(target.document[name]);
+        merge(old, part);
+        part = std::move(old);
+      }
+      target.document[name] = std::move(part.document);
+      put(target.origin, key, std::move(part.origin));
+    }
+  }
+
   WholeJson resolve_include(json value, const std::string& pointer, std::size_t depth, bool list) {
     const std::string place = pointer + "/include";
     const json name = std::move(value["include"]);
@@ -211,7 +212,7 @@ class Including {
   std::vector<File> chain_;  ///< from the first file to the one that is read now
   fs::path folder_;          ///< real; empty for what is no file
   std::size_t bytes_ = 0;
-  int count_ = 0;
+  int count_ = 0, parts_ = 0;
 };
 
 }  // namespace
