@@ -195,14 +195,6 @@ TEST(Scene, TheFingerprintForgetsTheLookAndNothingElse) {
   as_written << std::ifstream(NULLCONE_SOURCE "/scenes/goedel_earth.json").rdbuf();
   const Scene written = read_scene(as_written.str(), "file", metrics);
   EXPECT_EQ(read_scene(written.canonical, "file", metrics).sha256, written.sha256);
-  // What is for editors and readers alone.
-  for (const char* named : {"scene.schema.json", "elsewhere"}) {
-    EXPECT_EQ(read(with("/$schema", named)).sha256, plain);
-    EXPECT_EQ(read(with("/$schema", named)).canonical.find("schema"), std::string::npos);
-  }
-  const Scene commented = read_scene("// a comment\n" + as_written.str() + "/* another */", "file", metrics);
-  EXPECT_EQ(commented.canonical, written.canonical);
-  EXPECT_EQ(commented.sha256, written.sha256);
 }
 
 TEST(Scene, WhoStandsWhereIsChecked) {
