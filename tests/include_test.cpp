@@ -142,6 +142,9 @@ TEST_F(Include, ComplaintsNameTheFileAndThePlaceInIt) {
   write("base.json", R"({"a": {"b": 1}})");  // the whole file is another one
   EXPECT_EQ(told(R"({"include": "base.json", "c": 1})", "/a/b"), "base.json: /a/b: is wrong: here");
   EXPECT_EQ(told(R"({"include": "base.json", "c": 1})", "/c"), "top.json: /c: is wrong: here");
+  write("removed.json",
+        R"({"a": {"include": "ball.json"}})");  // what is missing then is not ball.json's affair
+  EXPECT_EQ(told(R"({"include": "removed.json", "a": null})", "/a"), "removed.json: /a: is wrong: here");
   const InputError other("elsewhere.exr", "no");
   EXPECT_STREQ(whole(scene).origin.told(other, top()).what(), other.what());
 }

@@ -132,6 +132,15 @@ def entries(name, at, pointer=""):
             yield from entries(name, part, f"{pointer}/{key}")
 
 
+def check_references(held, name, at, pointer=""):
+    """VS Code (vscode-json-languageservice 5) lets what is referred to overwrite the keywords beside the reference."""
+    if isinstance(at, dict) and isinstance(at.get("$ref"), str):
+        twice = set(at) & set(held.schema.follow(name, at["$ref"])[1]) - {"$ref", "description", "default", "$comment"}
+        held.faults += [f"{name}#{pointer}: '{word}' beside a reference that has it too" for word in twice]
+    for key, part in at.items() if isinstance(at, dict) else enumerate(at) if isinstance(at, list) else ():
+        check_references(held, name, part, f"{pointer}/{key}")
+
+
 def check_schemas(held, documents):
     """They are schemas, tell of every entry, and the documents hold them all."""
     found, told = set(), {}
@@ -145,6 +154,7 @@ def check_schemas(held, documents):
     held.faults += [f"{place}: has no description" for place, yes in told.items() if not yes]
     for name, document in held.files.items():
         jsonschema.Draft202012Validator.check_schema(document)
+        check_references(held, name, document)
         held.faults += [f"{where}: is in none of the documents" for where, part in entries(name, document) if id(part) not in found]
 
 
