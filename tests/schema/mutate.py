@@ -69,6 +69,19 @@ def places(schema, name, top, document):
     yield from walk((), document, [(name, top)])
 
 
+def along(schema, name, top, document, path):
+    """The subschemas of one place, which need not be there."""
+    given = [(name, top)]
+    for step in path:
+        found = [one for part_name, part in given for one in schema.here(part_name, part, document)]
+        given = list(schema.below(found, step))
+        try:
+            document = document[step]
+        except (KeyError, IndexError, TypeError):
+            document = None
+    return [one for part_name, part in given for one in schema.here(part_name, part, document)]
+
+
 def at(document, path):
     for step in path:
         document = document[step]
