@@ -3,9 +3,10 @@
 #include <cmath>
 
 #include "apps/geodesic_inquiry.h"
-#include "apps/scene_text.h"
+#include "apps/scene_file.h"
 #include "core/base/boost.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/trace/trace_scene.h"
 #include "metrics/registry.h"
 
@@ -87,7 +88,9 @@ double last_lambda(const Ray& ray, const TracedPixel& traced) {
 Inquiry inquire_pixel(const GeodesicOptions& options) {
   TracedPixel traced{};
   Scene& scene = traced.scene;
-  scene = read_scene(scene_text(options.scene), options.scene, metric_descriptions());
+  const WholeJson file = read_scene_file(options.scene);
+  scene = file.read(
+      [&] { return read_scene(canonical_json(file.document), options.scene, metric_descriptions()); });
   Inquiry out{};
   out.spacetime = &find_spacetime(scene.metric);
   const MetricDescription metric = out.spacetime->description();
@@ -99,7 +102,7 @@ Inquiry inquire_pixel(const GeodesicOptions& options) {
     throw InputError("--paths", "the observer's frame \"normal\" needs integrated paths");
   scene.camera.samples = 1;  // the ray through the centre
   traced.pixel = pixel_of(options.pixel, scene.camera);
-  const auto tracer = prepare_scene(*out.spacetime, scene, options.scene);
+  const auto tracer = file.read([&] { return prepare_scene(*out.spacetime, scene, options.scene); });
   trace(*tracer, traced);
 
   Ray ray{out.spacetime,       out.parameters, scene.observer.event, past_tangent(scene, traced.pixel), {},

@@ -1,13 +1,14 @@
 // nullcone-trace: from a scene to a dataset; or from a sequence to many.
 #include <cstdio>
 
-#include "apps/scene_text.h"
+#include "apps/scene_file.h"
 #include "apps/stop_signals.h"
 #include "apps/tool.h"
 #include "apps/trace_run.h"
 #include "apps/trace_sequence.h"
 #include "apps/trace_talk.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "metrics/registry.h"
 
 namespace {
@@ -19,13 +20,15 @@ int trace_one(const TraceOptions& options) {
   if (options.scene.empty() == options.from.empty())
     throw InputError("command line", "expected either a SCENE or --from DATA.exr");
   const std::string& source = options.from.empty() ? options.scene : options.from;
-  const std::string text = options.from.empty() ? scene_text(source) : read_manifest(source).scene;
-  const Scene scene = read_scene(text, source, metric_descriptions());
+  if (!options.from.empty()) read_manifest(source);  // refuses what is no dataset
+  const WholeJson file = read_scene_file(source);
   std::optional<Shard> shard;
   if (!options.shard.empty()) shard = read_shard(options.shard);
-  const TraceRun run =
-      trace_to(options.output, scene, source, shard, options.resume ? Resume::must_fit : Resume::no, options,
-               TraceTalk(options.common.quiet).notes());
+  const TraceRun run = file.read([&] {
+    const Scene scene = read_scene(canonical_json(file.document), source, metric_descriptions());
+    return trace_to(options.output, scene, source, shard, options.resume ? Resume::must_fit : Resume::no,
+                    options, TraceTalk(options.common.quiet).notes());
+  });
   if (run.whole) return 0;
   std::fprintf(stderr, "%snullcone-trace: interrupted; %s holds %d of %d scan lines, go on with --resume\n",
                options.common.quiet ? "" : "\n", partial_path(options.output).c_str(), run.traced_lines,

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/scene_text.h"
+#include "apps/scene_file.h"
 #include "apps/stop_signals.h"
 #include "core/base/error.h"
 #include "core/base/frame_numbers.h"
@@ -56,18 +56,18 @@ std::string unfinished(const std::string& path, const Scene& scene, const std::o
 }
 
 TraceFrames::TraceFrames(const std::string& scene, std::string output, const std::string& frames)
-    : TraceFrames(scene, parse_json(scene_text(scene), scene), std::move(output), frames) {}
+    : TraceFrames(scene, read_scene_file(scene), std::move(output), frames) {}
 
-TraceFrames::TraceFrames(std::string source, nlohmann::json scene, std::string output,
-                         const std::string& frames)
+TraceFrames::TraceFrames(std::string source, WholeJson scene, std::string output, const std::string& frames)
     : source_(std::move(source)),
       output_(std::move(output)),
-      document_(std::move(scene)),
+      file_(std::move(scene)),
       metrics_(metric_descriptions()) {
   if (output_.size() <= 4 || !output_.ends_with(".exr"))
     throw InputError(output_, "expected a name that ends in .exr");
-  if (!is_sequence(document_)) throw InputError(source_, "is no sequence; expected \"frames\" in the scene");
-  frames_ = read_frames(document_, source_);
+  if (!is_sequence(file_.document))
+    throw InputError(source_, "is no sequence; expected \"frames\" in the scene");
+  frames_ = file_.read([&] { return read_frames(file_.document, source_); });
   numbers_ = parse_frames(frames.empty() ? "0-" + std::to_string(frames_.count - 1) : frames);
   for (const int frame : numbers_)
     if (frame >= frames_.count)
@@ -79,7 +79,9 @@ TraceFrames::TraceFrames(std::string source, nlohmann::json scene, std::string o
 
 Scene TraceFrames::scene(int frame) const {
   const std::string where = place(frame);
-  return read_scene(canonical_json(scene_at(document_, frames_, frame, source_)), where, metrics_);
+  return file_.read([&] {
+    return read_scene(canonical_json(scene_at(file_.document, frames_, frame, source_)), where, metrics_);
+  });
 }
 
 std::string TraceFrames::whole_file(int frame) const { return numbered(output_, frame, "--output"); }

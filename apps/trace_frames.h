@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/trace_job.h"
+#include "core/base/include.h"
 #include "core/scene/read_scene.h"
 #include "core/scene/sequence.h"
 
@@ -26,7 +26,7 @@ class TraceFrames {
   /// InputError for what is no sequence, for frames that it does not have, and for a name without #.
   TraceFrames(const std::string& scene, std::string output, const std::string& frames);
   /// The same of a scene that was read from `source`.
-  TraceFrames(std::string source, nlohmann::json scene, std::string output, const std::string& frames);
+  TraceFrames(std::string source, WholeJson scene, std::string output, const std::string& frames);
 
   /// Those that are asked for.
   const std::vector<int>& numbers() const { return numbers_; }
@@ -35,12 +35,14 @@ class TraceFrames {
   /// For complaints.
   std::string place(int frame) const { return source_ + " (frame " + std::to_string(frame) + ")"; }
   Scene scene(int frame) const;
+  /// Whose complaints are told of the files that the scene includes.
+  const WholeJson& file() const { return file_; }
   /// The whole picture of a frame.
   std::string whole_file(int frame) const;
 
  private:
   std::string source_, output_;
-  nlohmann::json document_;
+  WholeJson file_;
   Frames frames_;
   std::vector<int> numbers_;
   std::vector<MetricDescription> metrics_;

@@ -112,9 +112,10 @@ class FrameTracing {
       return true;
     }
     const std::string place = frames_.place(frame);
-    const TraceRun run =
-        trace_to(path, scene, place, shard_, options_.overwrite ? Resume::no : Resume::if_it_fits, options_,
-                 [&](const std::string& line) { notes_(line, place); });
+    const TraceRun run = frames_.file().read([&] {
+      return trace_to(path, scene, place, shard_, options_.overwrite ? Resume::no : Resume::if_it_fits,
+                      options_, [&](const std::string& line) { notes_(line, place); });
+    });
     effort_ += run.effort;
     if (run.whole) ++traced_;
     return run.whole;

@@ -94,6 +94,7 @@ Look parse_look(const nlohmann::json& document, const LookSource& source, const 
   look.develop = parse_develop(in, source);
   if (in.has("legend")) look.legend = parse_legend(in.object("legend"), source, document, manifest);
   look.background = parse_color_or(in, "background", {});
+  if (document.contains("$schema")) in.text("$schema");  // for editors; no step of a path
   in.finish();
   check_light(look, in);
   return look;

@@ -39,7 +39,7 @@ void parse_spectrum_in_time(JsonObject& outer, const LookSource& source, Appeara
   }
   // Step 2: whatever else changes, node by node.
   const Nodes nodes = at_nodes(entry, kSteps, {}, source.place, pointer);
-  if (nodes.values.size() == 1 && !out.spectrum_in_time.temperature_K) {
+  if (nodes.timeline.nodes.empty() && !out.spectrum_in_time.temperature_K) {
     out.spectrum = parse_spectrum(outer.object("spectrum"), source);
     return;
   }

@@ -1,6 +1,7 @@
 #include "postrender/look_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace nullcone::postrender {
@@ -14,7 +15,8 @@ std::set<int> parse_paths(JsonObject& in, int recorded) {
   const nlohmann::json& list = in.at("paths");
   if (!list.is_array()) in.refuse("paths", "expected a list of numbers of paths, from 0");
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const bool there = list[i].is_number_integer() && list[i] >= 0 && list[i] < recorded;
+    const bool there = list[i].is_number() && list[i] >= 0 && list[i] < recorded &&
+                       list[i] == std::floor(list[i].get<double>());
     if (!there)
       in.refuse("paths/" + std::to_string(i),
                 "expected a whole number from 0 to " + std::to_string(recorded - 1) + ": the dataset has " +

@@ -86,18 +86,20 @@ LookDocument read_document(const Manifest& manifest, const std::string& dataset_
                            const std::string& look_file, const std::vector<std::string>& settings) {
   json document = json::object();
   LookSource source{dataset_file, "/look", folder_of(dataset_file)};
+  JsonOrigin origin;
   if (!look_file.empty()) {
-    document = parse_json_file(look_file);
+    WholeJson look = include_files(parse_json_file(look_file), look_file);
+    document = std::move(look.document), origin = std::move(look.origin);
     source = {look_file, "", folder_of(look_file)};
   } else if (!manifest.scene.empty()) {
     const json scene = parse_json(manifest.scene, dataset_file);
     if (scene.is_object() && scene.contains("look")) document = scene["look"];
   }
   for (const std::string& setting : settings) set_entry(document, setting);
-  return {std::make_shared<const json>(std::move(document)), source};
+  return {std::make_shared<const json>(std::move(document)), source, std::move(origin)};
 }
 
-Look look_at(const LookDocument& document, const Manifest& manifest, double frame, LookInFull* in_full) {
+Look look_at(const LookDocument& document, const Manifest& manifest, double frame, LookInFull* in_full) try {
   LookSource source = document.source;
   source.frame = frame;
   if (in_full != nullptr) {
@@ -109,6 +111,8 @@ Look look_at(const LookDocument& document, const Manifest& manifest, double fram
   if (in_full != nullptr)
     in_full->text = canonical_json(told_alike(in_full->survey.complete(now, source.pointer)));
   return look;
+} catch (const InputError& error) {
+  throw document.origin.told(error, document.source.place);
 }
 
 Look read_look(const Manifest& manifest, const std::string& dataset_file, const std::string& look_file,

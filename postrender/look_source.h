@@ -2,11 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/base/include.h"
 #include "postrender/look.h"
 
 namespace nullcone::postrender {
@@ -21,6 +21,7 @@ void set_entry(nlohmann::json& look, const std::string& assignment);
 struct LookDocument {
   std::shared_ptr<const nlohmann::json> json;
   LookSource source;
+  JsonOrigin origin = {};  ///< of a look file: where what it includes was written
 };
 
 /// What a parsed look amounts to.

@@ -23,6 +23,7 @@ packages=(
 case ${1:-} in
   --test)
     packages+=(clang-format openexr python3-openimageio python3-numpy   # the last reads datasets as users do
+               python3-jsonschema   # scenes and looks as editors check them
                chromium nodejs   # the viewer's page in a browser
                slurm-wlm)        # a cluster of two nodes on this machine; brings munge
     command -v npm >/dev/null || packages+=(npm)   # some builds of nodejs bring their own

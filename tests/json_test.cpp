@@ -50,7 +50,8 @@ TEST(Json, SyntaxErrorsNameLineAndColumn) {
       {"x", "file: line 1, column 1: not valid JSON"},
       {"{\"a\": 1,}", "file: line 1, column 9: not valid JSON"},
       {"[1] 2", "file: line 1, column 5: not valid JSON"},
-      {"// no\n[]", "file: line 1, column 1: not valid JSON"},
+      {"// a comment\n[ /* and\nanother */ }", "file: line 3, column 12: not valid JSON"},
+      {"# no\n[]", "file: line 1, column 1: not valid JSON"},
       {"{'a': 1}", "file: line 1, column 2: not valid JSON"},
       {"[01]", "file: line 1, column 3: not valid JSON"},
       {"[+1]", "file: line 1, column 2: not valid JSON"},
@@ -60,8 +61,22 @@ TEST(Json, SyntaxErrorsNameLineAndColumn) {
   expect_within(parse_complaint("[\"a\nb\"]"), "not valid JSON");
 }
 
+TEST(Json, CommentsAreSkipped) {
+  const json found = parse_json(
+      "// of the file\n{ /* here */ \"a\" /**/ : // there\r\n [1, /* 2, */ 3], \"b\": \"// no /* comment "
+      "*/\"}\n//",
+      "file");
+  EXPECT_EQ(canonical_json(found), R"({"a":[1,3],"b":"// no /* comment */"})");
+  expect_within(parse_complaint("{\"a\": 1 /* no end }"), "not valid JSON");
+  expect_within(parse_complaint("{\"a\": 1} / "), "not valid JSON");
+  expect_within(parse_complaint("/* /* */ */ {}"), "file: line 1, column 10: not valid JSON");
+  EXPECT_EQ(parse_complaint("{} // \xff"), "");  // its bytes are no text
+  expect_within(parse_complaint("{\"a\": 1, /* twice */ \"a\": 2}"), "file: /a: the key stands twice");
+  expect_within(parse_complaint(std::string_view("{} // \0", 7)), "a zero byte");
+}
+
 TEST(Json, EmptyTextsAreRefused) {
-  for (const char* text : {"", " ", "\n\t\r\n", "\xEF\xBB\xBF"})
+  for (const char* text : {"", " ", "\n\t\r\n", "\xEF\xBB\xBF", "// nothing", "/* nothing */"})
     expect_within(parse_complaint(text), "not valid JSON");
 }
 

@@ -211,6 +211,42 @@ TEST(LookSources, complaints_name_the_place) {
   EXPECT_NE(complaint([&] { read_look(manifest, "d.exr", folder.file("no.json"), {}); }), "");
 }
 
+TEST(LookSources, files_include_others) {
+  TestFolder folder;
+  const Manifest manifest = two_objects();
+  folder.write("moon.json", R"({"$schema": "x", "opacity": 0.5, "intensity": -1} // of the moon)");
+  const std::string file = folder.write("look.json", R"({"$schema": "look.schema.json", "gamut": "clip",
+      "objects": {"moon": {"include": "moon.json", "intensity": 2}}})");
+  const Look look = read_look(manifest, "d.exr", file, {});
+  EXPECT_EQ(look.objects.at("moon").opacity.constant, 0.5);
+  EXPECT_EQ(look.objects.at("moon").appearance.intensity->constant, 2);
+  const std::string found = complaint([&] {
+    read_look(manifest, "d.exr", file, {"objects.moon.intensity=null", "objects.moon.intensity=-1"});
+  });
+  EXPECT_NE(found.find(file + ": /objects/moon/intensity"), std::string::npos) << found;
+  const std::string wrong = folder.write("wrong.json", R"({"objects": {"moon": {"include": "moon.json"}}})"),
+                    theirs = complaint([&] { read_look(manifest, "d.exr", wrong, {}); });
+  EXPECT_EQ(theirs.find(folder.file("moon.json") + ": /intensity: "), 0u) << theirs;
+  // The look of a dataset, and one that is sent, include nothing.
+  Manifest stranger = two_objects();
+  stranger.scene = R"({"look": {"objects": {"moon": {"include": "moon.json"}}}})";
+  EXPECT_NE(complaint([&] {
+              read_look(stranger, folder.file("d.exr"), "", {});
+            }).find("/look/objects/moon/include"),
+            std::string::npos);
+}
+
+TEST(LookSources, a_single_keyframe_of_a_spectrum_is_one_spectrum) {
+  const auto spectrum = [](const char* radiance) {
+    return look_of(R"({"objects":{"earth":{"spectrum":{"type":"equal_energy","radiance":)" +
+                       std::string(radiance) + "}}}}",
+                   two_objects())
+        .objects.at("earth")
+        .appearance.spectrum->key;
+  };
+  EXPECT_EQ(spectrum(R"({"keyframes":[[3,2]],"by":"tau"})"), spectrum("2.0"));
+}
+
 TEST(LookSources, textures_are_found_beside_the_look) {
   Manifest manifest = two_objects();
   TestFolder folder;

@@ -72,6 +72,42 @@ cmp -s full/a.exr before.exr || fault "a full disk cost the dataset that was the
 silent "$trace" scene.json --quiet -o b.exr
 silent bash -c "cat scene.json | '$trace' /dev/stdin --quiet -o b.exr"
 
+# Comments, and a scene in several files: the same as in one, and nothing of them is needed afterwards.
+mkdir parts parts/more; ln -s "$PWD/scene.json" parts/outside.json
+python3 - <<'PYTHON' || fault "cannot make parts"
+import json
+scene = json.load(open("scene.json"))
+json.dump(scene["objects"][1:], open("parts/squares.json", "w"))
+json.dump(scene["objects"][0] | {"$schema": "x", "transparent": None}, open("parts/more/earth.json", "w"))
+json.dump(scene["camera"] | {"roll_deg": 3}, open("parts/camera.json", "w"))
+parts = {"$schema": "no/matter.json", **scene, "camera": {"include": "camera.json", "roll_deg": None}}
+parts["objects"] = [{"include": "more/earth.json", "transparent": None}, {"include": "squares.json"}]
+open("parts/scene.json", "w").write("// a scene\n" + json.dumps(parts, indent=1) + " /* in parts */")
+for name, change in {"radius": {"shape": {"radius": -1}}, "name": {"name": "square_left"}, "none": {"include": "nowhere.json"},
+                     "out": {"include": "outside.json"}, "seven": {"include": 7}}.items():
+    open(f"parts/{name}.json", "w").write(json.dumps({"include": "scene.json", "objects": [
+        {"include": "more/earth.json", "transparent": None} | change, {"include": "squares.json"}]}))
+wrong = json.load(open("parts/squares.json"))
+wrong[1]["shape"]["edges"] = [1]
+json.dump(wrong, open("parts/squares_wrong.json", "w"))
+open("parts/wrong.json", "w").write(json.dumps(scene | {"objects": [scene["objects"][0], {"include": "squares_wrong.json"}]}))
+PYTHON
+silent "$trace" parts/scene.json -q -o parts.exr
+silent "$trace" scene.json -q -o whole.exr
+hash() { "$info" "$1" --json | python3 -c "import json, sys; d = json.load(sys.stdin); print(d['scene_sha256'], d['payload'], d['scene'])"; }
+[ "$(hash parts.exr)" = "$(hash whole.exr)" ] || fault "a scene in parts is another one than in one file"
+refused 2 "parts/radius.json: /objects/0/shape/radius: is -1" "$trace" parts/radius.json -o p.exr
+refused 2 "parts/squares.json: /0/name: 'square_left' names two" "$trace" parts/name.json -o p.exr
+refused 2 "parts/squares_wrong.json: /1/shape/edges: " "$trace" parts/wrong.json -o p.exr
+refused 2 "parts/squares_wrong.json: /1/shape/edges: " "$geodesic" parts/wrong.json --pixel 0,0
+refused 2 "parts/none.json: /objects/0/include: cannot open 'parts/nowhere.json'" "$trace" parts/none.json -o p.exr
+refused 2 "parts/outside.json' leads out of the folder" "$trace" parts/out.json -o p.exr
+refused 2 "parts/seven.json: /objects/0/include: expected the name" "$trace" parts/seven.json -o p.exr
+refused 2 "from a pipe cannot include" bash -c "cat parts/scene.json | '$trace' /dev/stdin -o p.exr"
+rm -r parts
+silent "$trace" parts.exr -q -o again.exr
+[ "$(hash again.exr)" = "$(hash whole.exr)" ] || fault "a dataset of a scene in parts does not trace again without them"
+
 # Same numbers for any number of threads, and traced again from the dataset's own header.
 payload() { "$info" "$1" --json | python3 -c "import json, sys; d = json.load(sys.stdin); print(d['payload'], d['scene_sha256'])"; }
 silent "$trace" scene.json -q --threads 1 -o one.exr

@@ -168,6 +168,12 @@ refused_with 2 "--missing: expected --frames" "$trace" s.json --missing -o bad.e
 refused_with 2 "as many shards" "$trace" s.json "${bad[@]}" --missing --shards 4
 refused_with 2 "as many shards" "$trace" s.json "${bad[@]}" --shard 1/4
 refused_with 2 "s.json: /frames: this is a sequence" "$trace" s.json -o bad.exr
+mkdir parts
+echo '{"include": "s.json", "camera": {"include": "parts/camera.json"}}' >in_parts.json
+echo '{"elevation_deg": {"keyframes": [[1.5, 0], [2, 100]]}}' >parts/camera.json
+refused_with 2 "parts/camera.json (frame 4): /elevation_deg: is 100" "$trace" in_parts.json --frames 0-4 -o 'bad.#.exr'
+echo '{"elevation_deg": {"keyframes": [[2, 0], [1, 1]]}}' >parts/camera.json
+refused_with 2 "parts/camera.json: /elevation_deg/keyframes/1: expected a later time" "$trace" in_parts.json --frames 0-4 -o 'bad.#.exr'
 refused_with 2 "lonely.json: /camera/azimuth_deg: has keyframes" "$trace" lonely.json -o bad.exr
 refused_with 2 "s.json: /frames: this is a sequence" "$geodesic" s.json --pixel 3,3
 refused_with 1 "none/bad.0.exr: cannot write there" "$trace" s.json --frames 0-4 -o 'none/bad.#.exr'

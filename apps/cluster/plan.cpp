@@ -97,6 +97,7 @@ Cost measured_cost(const std::vector<Attempt>& attempts, int shards) {
 
 std::vector<std::int64_t> Round::bundle(int which) const {
   std::vector<std::int64_t> out;
+  if (bundles < 1) return out;
   for (auto i = static_cast<std::size_t>(which); i < pieces.size(); i += static_cast<std::size_t>(bundles))
     out.push_back(pieces[i]);
   return out;
@@ -135,7 +136,7 @@ Round read_round(const Folder& folder, int number) {
   out.settings = read_settings(root.object("settings"));
   out.scene_sha256 = root.text("scene_sha256");
   out.pieces = read_runs(root.text("pieces"), root);
-  out.bundles = static_cast<int>(root.integer("bundles", out.pieces.empty() ? 0 : 1, kMost));
+  out.bundles = static_cast<int>(root.integer("bundles", 0, kMost));
   out.memory_mb = static_cast<int>(root.integer("memory_mb", 0, kMost));
   out.minutes = static_cast<int>(root.integer("minutes", 0, kMost));
   out.piece_s = root.number("piece_s");

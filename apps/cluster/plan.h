@@ -35,13 +35,13 @@ struct Round {
   Settings settings;
   std::string scene_sha256;          ///< of the sequence without its look
   std::vector<std::int64_t> pieces;  ///< ascending
-  int bundles = 1;                   ///< bundle k has the pieces k, k + bundles, ...: so all take as long
-  int memory_mb = 0, minutes = 0;    ///< of a task; 0: not asked for
-  double piece_s = 0;                ///< what a piece takes; 0: not known
-  int delay_s = 0;                   ///< before it begins
-  bool trial = false;                ///< one piece, to measure it
-  double begun = 0;                  ///< seconds since 1970
-  double progress = 0;               ///< pieces that were there then, parts of them too
+  int bundles = 1;  ///< bundle k has the pieces k, k + bundles, ...: so all take as long; 0: no tasks
+  int memory_mb = 0, minutes = 0;  ///< of a task; 0: not asked for
+  double piece_s = 0;              ///< what a piece takes; 0: not known
+  int delay_s = 0;                 ///< before it begins
+  bool trial = false;              ///< one piece, to measure it
+  double begun = 0;                ///< seconds since 1970
+  double progress = 0;             ///< pieces that were there then, parts of them too
 
   std::vector<std::int64_t> bundle(int number) const;
 };

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "apps/scene_text.h"
+#include "apps/scene_file.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/sha256.h"
@@ -13,10 +13,10 @@ using nlohmann::json;
 
 namespace {
 
-json read_sequence(const std::string& path) {
-  json out = parse_json(scene_text(path), path);
-  if (out.is_object() && !is_sequence(out))
-    out["frames"] = {{"count", 1}, {"from", 0}, {"to", 0}, {"time", "proper"}};
+WholeJson read_sequence(const std::string& path) {
+  WholeJson out = read_scene_file(path);
+  if (out.document.is_object() && !is_sequence(out.document))
+    out.document["frames"] = {{"count", 1}, {"from", 0}, {"to", 0}, {"time", "proper"}};
   return out;
 }
 
@@ -34,7 +34,7 @@ void write_if_new(const std::string& path, const json& document) {
 }  // namespace
 
 SceneSource::SceneSource(const std::string& path)
-    : place(path), document(read_sequence(path)), sha256(sha256_without_look(document)) {}
+    : file(read_sequence(path)), sha256(sha256_without_look(file.document)) {}
 
 void check_scenes(const TraceFrames& frames, int shards) {
   for (const int frame : frames.numbers()) {
@@ -56,9 +56,9 @@ void refuse_strangers(const TraceFrames& frames, int threads) {
 }
 
 void adopt(const SceneSource& scene, const Folder& folder) {
-  write_if_new(folder.scene(), scene.document);
-  if (scene.document.contains("look"))
-    write_if_new(folder.look(), scene.document.at("look"));
+  write_if_new(folder.scene(), scene.file.document);
+  if (scene.file.document.contains("look"))
+    write_if_new(folder.look(), scene.file.document.at("look"));
   else
     std::filesystem::remove(folder.look());
 }

@@ -1,7 +1,6 @@
 // The scene that is submitted, as a sequence.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/cluster/folder.h"
@@ -10,9 +9,8 @@
 namespace nullcone::cluster {
 
 struct SceneSource {
-  std::string place;        ///< its file, for complaints
-  nlohmann::json document;  ///< a scene without frames has become a sequence of one
-  std::string sha256;       ///< without its look
+  WholeJson file;      ///< with all that it includes; a scene without frames has become a sequence of one
+  std::string sha256;  ///< without its look
 
   /// Throws InputError.
   explicit SceneSource(const std::string& path);

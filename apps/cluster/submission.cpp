@@ -135,7 +135,7 @@ int finish_once(const Folder& folder, int number, int threads) {
     std::printf("the folder has another scene now\n");
     return 0;
   }
-  const TraceFrames frames(folder.scene(), scene.document, folder.data(), round.settings.frames);
+  const TraceFrames frames(folder.scene(), scene.file, folder.data(), round.settings.frames);
   merge_shards(frames, round.settings.shards, threads);
   Others others = others_at(folder, round.settings, threads, number);
   others.cancelled = cancelled_waiting(folder, number) || is_cancelled(folder, number);
@@ -150,7 +150,7 @@ int submit(const SubmitOptions& options) {
   const Folder folder(options.output);
   const SceneSource scene(options.scene);
   const Settings& settings = options.settings;
-  const TraceFrames frames(scene.place, scene.document, folder.data(), settings.frames);
+  const TraceFrames frames(scene.file.path, scene.file, folder.data(), settings.frames);
   check_scenes(frames, settings.shards);
   if (options.dry_run) return dry_run(folder, frames, request(folder, scene, settings));
   if (!options.local && !options.scripts_only && !has_slurm())

@@ -109,7 +109,7 @@ json parse_json(std::string_view text, const std::string& place) {
   if (nul != std::string_view::npos)
     throw InputError(place + ": " + line_and_column(text, nul + 1), "not valid JSON: a zero byte");
   try {
-    return json::parse(text, std::ref(guard));
+    return json::parse(text, std::ref(guard), true, true);  // comments are skipped
   } catch (const json::parse_error& error) {
     throw InputError(place + ": " + line_and_column(text, error.byte),
                      "not valid JSON: " + tidy(error.what()));

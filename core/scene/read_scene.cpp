@@ -203,6 +203,7 @@ Scene read_scene(const std::string& text, const std::string& place,
   root.text("$schema", "");
   root.finish();
 
+  document.erase("$schema");  // for editors, and relative to the file
   scene.canonical = canonical_json(document);
   document.erase("look");
   scene.sha256 = sha256(canonical_json(document));

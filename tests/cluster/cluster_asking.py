@@ -297,7 +297,7 @@ def garbled(place, slurm):
     good = last.read_text()
     (folder / "data.0001.exr").unlink()  # where nothing is missing, nobody asks for plans
     for text in ("", "{", "[]", good.replace('"round"', '"square"'), good.replace('"pieces": "', '"pieces": "9-1,'), "\xff", "[" * 100_000,
-                 re.sub('"bundles": [0-9]+', '"bundles": 0', good)):
+                 re.sub('"bundles": [0-9]+', '"bundles": -1', good)):
         place.check(text != good, "the plan is not damaged")
         last.write_text(text, encoding="latin-1")
         for call in calls[:3]:

@@ -5,6 +5,7 @@ Usage: local_test.py TOOLS_DIR SOURCE_DIR [SCENARIO...]   (all of them; their na
 """
 import collections
 import concurrent.futures
+import json
 import os
 import signal
 import subprocess
@@ -18,8 +19,8 @@ HERE = ["--local", "--jobs", "2", "--retry-delay", "0"]
 NO_SLURM = {"PATH": "/nowhere"}
 
 
-def start(place, tools, folder, *options):
-    return subprocess.Popen([tools / "nullcone-submit", place.sequence, "-o", folder, *HERE, *options], text=True,
+def start(place, tools, folder, *options, scene=None):
+    return subprocess.Popen([tools / "nullcone-submit", scene or place.sequence, "-o", folder, *HERE, *options], text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **NO_SLURM})
 
 
@@ -49,6 +50,25 @@ def undisturbed(place):
     folder = place.root / "it's %d"
     ended(place, start(place, place.bin, folder, "--shards", "3", "--frames", "2-6", "--quiet"), 0)
     place.whole(folder, "shards", {frame: place.reference()[frame] for frame in range(2, 7)})
+
+
+def in_parts(place):
+    """A scene in several files is whole in the folder, and these are not needed any more."""
+    parts, folder = place.root / "parts", place.root / "of parts"
+    parts.mkdir()
+    whole = json.loads(place.sequence.read_text())
+    whole.pop("$schema")
+    (parts / "objects.json").write_text(json.dumps(whole["objects"]))
+    (parts / "look.json").write_text('{"$schema": "x", "exposure": {"ev": 1}} // of no account')
+    scene = {**whole, "$schema": "x", "objects": [{"include": "objects.json"}], "look": {"include": "look.json"}}
+    (parts / "scene.json").write_text(json.dumps(scene))
+    ended(place, start(place, place.bin, folder, "--frames", "0-1", scene=parts / "scene.json"), 0)
+    place.check.equal("in parts: the scene", json.loads((folder / "scene.json").read_text()), {**whole, "look": {"exposure": {"ev": 1}}})
+    place.check.equal("in parts: the look", json.loads((folder / "look.json").read_text()), {"exposure": {"ev": 1}})
+    place.whole(folder, "in parts", {frame: place.reference()[frame] for frame in range(2)})
+    whole["objects"][0]["shape"]["radius"] = -1
+    (parts / "objects.json").write_text(json.dumps(whole["objects"]))
+    ended(place, start(place, place.bin, folder, scene=parts / "scene.json"), 2, "objects.json (frame 0): /0/shape/radius: is -1")
 
 
 def kills(place):
@@ -160,7 +180,7 @@ def locks(place):
     place.whole(folder, "locks", {frame: place.reference()[frame] for frame in range(2)})
 
 
-SCENARIOS = {scenario.__name__: scenario for scenario in [undisturbed, kills, stopped, full_disk, hopeless, locks]}
+SCENARIOS = {scenario.__name__: scenario for scenario in [undisturbed, in_parts, kills, stopped, full_disk, hopeless, locks]}
 
 
 def main():

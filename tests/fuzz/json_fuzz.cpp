@@ -1,9 +1,13 @@
 // Any bytes, read as a scene, a look or a manifest (the first byte says which): a result or a complaint.
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/include.h"
 #include "core/base/json.h"
 #include "core/record/dataset_file.h"
 #include "core/scene/read_scene.h"
@@ -23,12 +27,38 @@ const std::vector<MetricDescription>& metrics() {
   return out;
 }
 
+/// A folder with files that a scene may include.
+class Parts {
+ public:
+  Parts() {
+    std::string name = (std::filesystem::temp_directory_path() / "json_fuzz.XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) std::abort();
+    folder_ = name;
+    write("top.json", "{}");
+    write("o.json", R"({"name": "a", "shape": {"type": "sphere", "radius": 1}, "x": {"include": "l.json"}})");
+    write("l.json", R"([{"include": "p.json"}, [1, 2], {"include": "p.json", "n": null}])");
+    write("p.json", R"({"n": 1, "m": {"k": [1]}})");
+    write("c.json", R"({"include": "c.json"})");
+  }
+  ~Parts() { std::filesystem::remove_all(folder_); }
+  std::string top() const { return folder_ + "/top.json"; }
+
+ private:
+  void write(const std::string& name, const char* text) const { std::ofstream(folder_ + "/" + name) << text; }
+  std::string folder_;
+};
+
 void read(char what, const std::string& text) {
   if (what % 4 == 0) {
-    const nlohmann::json document = parse_json(text, "scene");
-    if (!is_sequence(document)) return void(read_scene(text, "scene", metrics()));
-    const Frames frames = read_frames(document, "scene");
-    read_scene(canonical_json(scene_at(document, frames, frames.count / 2, "scene")), "scene", metrics());
+    static const Parts parts;
+    const WholeJson whole = include_files(parse_json(text, parts.top()), parts.top());
+    whole.read([&] {
+      const nlohmann::json& scene = whole.document;
+      if (!is_sequence(scene)) return void(read_scene(canonical_json(scene), parts.top(), metrics()));
+      const Frames frames = read_frames(scene, parts.top());
+      read_scene(canonical_json(scene_at(scene, frames, frames.count / 2, parts.top())), parts.top(),
+                 metrics());
+    });
   } else if (what % 4 == 1) {
     manifest_from_json(text, "manifest");
   } else {

@@ -1,0 +1,1 @@
+"""Documents for schema_test.py."""

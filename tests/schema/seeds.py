@@ -1,0 +1,178 @@
+"""Documents that between them hold every entry that a scene or a look may have. Mutations begin here."""
+
+STATIC = {"type": "static", "event": [0, 1, 2, 3]}
+FALLING = {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0.5, 0, 0.25]}
+BALL = {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": {"type": "coordinate", "centre": [3, 0, 0]}}
+
+SCENES = {
+    "flat": {
+        "$schema": "scene.schema.json",
+        "metric": {"name": "minkowski"},
+        "observer": {"event": [0, 0, 0, 0], "velocity": [0.5, 0, 0], "frame": "static"},
+        "camera": {"type": "panorama", "azimuth_deg": 24, "elevation_deg": 3, "roll_deg": -5, "fov_deg": [220, 25],
+                   "resolution": [264, 30], "samples": 2},
+        "max_lookback": 10,
+        "paths": "closed",
+        "objects": [
+            {"name": "ball", "shape": {"type": "sphere", "radius": 0.5, "dome": True},
+             "placing": {"type": "coordinate", "centre": [3, 0, 0], "z_axis": [0, 1, 0], "y_axis": [1, 0, 0]},
+             "opacity": 0.5, "transparent": True},
+            {"name": "board", "shape": {"type": "quad", "edges": [1, 2]},
+             "placing": {"type": "local", "worldline": STATIC, "axes": "static", "z_axis": [0, 0, 2], "y_axis": [0, 1, 1]}},
+            {"name": "box", "shape": {"type": "box", "edges": [1, 2, 3]},
+             "placing": {"type": "local", "worldline": FALLING, "axes": "gyroscope"}, "transparent": False},
+            {"name": "sky", "shape": {"type": "sky", "side": 1}},
+        ],
+        "lights": {
+            "windings": 1, "paths": 3, "shadows": False, "cap": 1e9,
+            "lamps": [
+                {"name": "sun", "worldline": STATIC, "shape": {"type": "point"}, "body": "ball"},
+                {"name": "moon", "worldline": FALLING, "shape": {"type": "sphere", "radius": 0.25}, "samples": 4},
+                {"name": "panel", "worldline": STATIC, "shape": {"type": "quad", "edges": [1, 1]}, "samples": 9,
+                 "axes": "static", "z_axis": [1, 0, 0], "y_axis": [0, 0, 1]},
+            ],
+        },
+        "records": {"max_hits": 3, "order": 1, "channels": ["Z", "uv", "duv", "light"], "differentials": True},
+        "look": {"lights": {"sun": {"paths": [0, 2]}}},
+    },
+    "hole": {
+        "metric": {"name": "kerr_schild", "mass": 2, "spin": -0.5, "chart": "ingoing"},
+        "observer": {"event": [0, 20, 0, 3], "frame": "normal"},
+        "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48]},
+        "paths": "integrated",
+        "accuracy": {"rtol": 1e-9, "atol": 1e-12, "integrator": "dopri5"},
+        "objects": [BALL],
+    },
+    "dust": {
+        "metric": {"name": "goedel", "a": 2},
+        "observer": {"event": [0, 0, 0, 0]},
+        "camera": {"type": "sphere", "resolution": [64, 32]},
+        "accuracy": "draft",
+        "objects": [BALL],
+    },
+    "wormhole": {
+        "metric": {"name": "ellis_wormhole", "throat": 2},
+        "observer": {"event": [0, 20, 0, 3]},
+        "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48]},
+        "objects": [{"name": "here", "shape": {"type": "sky"}}, {"name": "beyond", "shape": {"type": "sky", "side": 2}}],
+    },
+    "sequence": {
+        "frames": {"count": 3, "from": -1, "to": 1.5, "time": "coordinate"},
+        "metric": {"name": "goedel", "a": {"keyframes": [[0, 1], [1, 2]]}},
+        "observer": {"event": [None, 0, {"keyframes": [[-1, 0], [1, 0.5]], "interpolation": "smooth", "by": "time"}, 0]},
+        "camera": {"type": "panorama", "fov_deg": [{"keyframes": [[0, 100]]}, 25], "resolution": [64, 48]},
+        "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": {"keyframes": [[0, 1], [1, 2]]}},
+                     "placing": {"type": "coordinate", "centre": [3, 0, 0]}}],
+        "look": {"exposure": {"ev": {"keyframes": [[0, -4], [2, 0]], "by": "frame"}}},
+    },
+    "own_time": {
+        "frames": {"count": 2, "from": 0, "to": 1, "time": "proper"},
+        "metric": {"name": "minkowski"},
+        "observer": {"event": [{"keyframes": [[0, 0], [1, 2]]}, 0, 0, 0]},
+        "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48]},
+        "objects": [BALL],
+    },
+    "included": {
+        "include": "none.json",
+        "camera": {"include": "none.json", "fov_deg": None},
+        "objects": [{"include": "list.json"}],
+    },
+}
+
+IN_TIME = {"keyframes": [[-1, 0.25], [0, 0.5]], "by": "tau", "interpolation": "smooth"}
+BLACK = {"type": "black_body", "temperature_K": 5000}
+
+LOOKS = {
+    "objects": {
+        "$schema": "look.schema.json",
+        "objects": {
+            "ball": {
+                "surface": {"type": "self_luminous"},
+                "texture": {"type": "image", "file": "a.png", "filter": "anisotropic", "alpha": True, "offset": [0, 0.5],
+                            "scale": [-1, 1], "rotate_deg": [0, 10, IN_TIME]},
+                "spectrum": {"type": "black_body", "temperature_K": 5000, "luminance_cd_m2": 100},
+                "opacity": 0.5, "intensity": 2,
+                "blink": {"channel": "tau", "period": 2, "duty": 0.25, "phase": 0.5, "fade": 0.125, "off": "transparent"},
+                "time_slices": [
+                    {"channel": "t", "from": -2, "to": -1, "fade": [0.25, 0.5], "texture": {"type": "color", "rgb": [1, 0.25, 0]}},
+                    {"channel": "tau", "from": 0, "fade": 0.5, "spectrum": {"type": "rgb"}, "intensity": 0.5},
+                    {"channel": "t", "blink": {"channel": "t", "period": 1}},
+                ],
+            },
+            "board": {
+                "surface": {"type": "lambertian"},
+                "texture": {"type": "checkerboard", "counts": [4, 2], "colors": [[0, 0, 0], [1, 1, 1]], "offset": [0.5, 0]},
+                "spectrum": {"type": "tabulated", "file": "table.csv", "beyond": "hold"},
+            },
+            "box": {
+                "texture": {"type": "checkerboard", "counts": [4, 2], "scale": [2, 2], "rotate_deg": {"axis": [0, 0, 1], "angle_deg": 30},
+                            "gradient": {"along": "u", "from": [1, 0, 0], "to": [0, 0, 1], "dark": 0.25}},
+            },
+            "sky": {"texture": {"type": "image", "file": "a_##.png", "sequence": {
+                "frames": [0, 9], "rate": 2, "clock": "tau", "from": -1, "loop": True, "blend": False}}},
+            "stones": {"texture": {"type": "materials", "file": "m.png", "filter": "mipmap", "offset": [0, 0], "scale": [1, 1],
+                                   "rotate_deg": [0, 0, 0]},
+                       "spectrum": {"type": "materials", "spectra": [BLACK, {"type": "equal_energy", "radiance": 2}]}},
+        },
+        "lights": {"sun": {"spectrum": BLACK}},
+    },
+    "spectra": {
+        "objects": {
+            "ball": {"spectrum": {"type": "channels", "spectra": [
+                BLACK, {"type": "gaussian", "centre_nm": 550, "fwhm_nm": 20, "radiance": 2, "luminance_cd_m2": 5},
+                {"type": "power_law", "index": 2, "radiance": 1, "at_nm": 500, "luminance_cd_m2": 5}]}},
+            "board": {"spectrum": {"type": "lines", "lines": [[589, 2], [589.5, 1]], "luminance_cd_m2": 1}},
+            "box": {"spectrum": {"type": "sum", "luminance_cd_m2": 3, "of": [
+                {"type": "constant", "radiance": 1, "from_nm": 400, "to_nm": 700, "luminance_cd_m2": 5},
+                {"type": "equal_energy", "radiance": 1, "luminance_cd_m2": 5},
+                {"type": "tabulated", "file": "table.csv", "luminance_cd_m2": 4}]}},
+            "sky": {"spectrum": {"type": "lit", "light": BLACK, "reflectance": {"type": "equal_energy"}, "luminance_cd_m2": 2}},
+            "stones": {"spectrum": {"type": "dominant_wavelength", "wavelength_nm": 500, "purity": 0.5, "radiance": 1,
+                                    "luminance_cd_m2": 2}},
+        },
+    },
+    "in_time": {
+        "objects": {
+            "ball": {"texture": {"type": "color", "rgb": [IN_TIME, 0, 1]}, "opacity": IN_TIME, "intensity": IN_TIME,
+                     "spectrum": {"type": "black_body", "temperature_K": {"keyframes": [[0, 3000], [1, 5000]], "by": "t"}}},
+            "board": {"texture": {"type": "checkerboard", "counts": [{"keyframes": [[0, 1], [1, 5]], "by": "t"}, 2],
+                                  "colors": [[0, 0, 0], [1, 1, 1]], "rotate_deg": {"axis": [0, 0, 1], "angle_deg": IN_TIME}},
+                      "spectrum": {"type": "display"}},
+            "box": {"spectrum": {"type": "total_radiance"}, "opacity": {"keyframes": [[0, 0], [5, 1]]}},
+        },
+        "lights": {"sun": {"on": True, "spectrum": {"type": "power_law", "index": IN_TIME}, "intensity": 3, "paths": [0, 1],
+                           "blink": {"channel": "t", "period": 1}, "time_slices": [
+                               {"channel": "tau", "from": 0, "to": 1, "fade": 0.25, "intensity": 0},
+                               {"channel": "t", "spectrum": BLACK},
+                               {"channel": "t", "blink": {"channel": "t", "period": 1}}]},
+                   "moon": {"on": False}},
+    },
+    "developed": {
+        "ambient": {"intensity": 0.5, "spectrum": {"type": "display"}},
+        "effects": {"doppler": False, "searchlight": True, "radiance_exponents": {"spectral": 5, "integrated": 4},
+                    "irradiance_exponents": {"spectral": 3, "integrated": 2}},
+        "sensor": "ccd",
+        "pixel_filter": {"type": "gaussian", "width": 2},
+        "exposure": {"white_cd_m2": 1e5, "ev": {"keyframes": [[0, -1], [9, 1]], "interpolation": "linear", "by": "frame"}},
+        "white_point": {"temperature_K": 3000},
+        "tone": {"curve": "exponential", "k": 2},
+        "gamut": "clip",
+        "output": {"space": "display_p3", "jpeg_quality": 90},
+        "background": [0, 0.25, 0.5],
+        "legend": {"corner": "top_left", "size": 2, "temperature": "ball", "scale": {"object": "ball", "from": 0.5, "to": 2},
+                   "time": {"label": "t", "unit": "s", "start": 0, "step": 0.5, "digits": 1}},
+        "objects": {"ball": {"spectrum": BLACK}},
+    },
+    "percentile": {"exposure": {"white_cd_m2": {"auto": "percentile", "percentile": 98}}, "tone": {"curve": "filmic", "white": 4},
+                   "white_point": "equal_energy", "sensor": {"file": "table.csv"}, "legend": {"time": True}},
+    "average": {"exposure": {"white_cd_m2": {"auto": "log_average", "key": 0.25}}, "white_point": {"xy": [0.3, 0.3]},
+                "tone": {"curve": "table", "points": [[0, 0], [0.5, 0.25], [2, 1]], "interpolation": "smooth"}},
+    "plain": {"exposure": {"white_cd_m2": "auto"}, "tone": {"curve": "linear"}, "ambient": {"spectrum": BLACK}},
+    "curve": {"tone": {"curve": "table", "file": "tone.csv", "interpolation": "linear"}},
+    "included": {"objects": {"include": "none.json", "ball": {"include": "none.json", "opacity": None}}},
+    "by_that_name": {"objects": {"include": {"opacity": 0.5}}},
+}
+
+OBJECTS = ["ball", "board", "box", "sky", "stones", "include"]
+LAMPS = ["sun", "moon"]
+PATHS = 3
