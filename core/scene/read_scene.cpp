@@ -1,15 +1,14 @@
 #include "core/scene/read_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/sha256.h"
+#include "core/scene/read_camera.h"
 #include "core/scene/read_lights.h"
 #include "core/scene/read_placing.h"
 #include "core/scene/read_records.h"
@@ -18,9 +17,6 @@
 namespace nullcone {
 
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
-constexpr long kMostPixels = 1L << 28;
 
 const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDescription> known,
                                      Scene& scene) {
@@ -48,53 +44,6 @@ Observer read_observer(JsonObject observer) {
   out.velocity = read_velocity(observer, "velocity");
   if (observer.word("frame", {"static", "normal"}, "static") == "normal") out.frame = ObserverFrame::normal;
   observer.finish();
-  return out;
-}
-
-/// The frame of the camera: azimuth from e1 towards e2, elevation towards e3, then roll about the look
-/// direction.
-void orient(Camera& camera, double azimuth, double elevation, double roll) {
-  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation),
-               se = std::sin(elevation);
-  camera.forward = {ce * ca, ce * sa, se};
-  const Triple left = {-sa, ca, 0}, up = cross(camera.forward, left);
-  const double cr = std::cos(roll), sr = std::sin(roll);
-  for (std::size_t i = 0; i < 3; ++i) {
-    camera.left[i] = cr * left[i] + sr * up[i];
-    camera.up[i] = cr * up[i] - sr * left[i];
-  }
-}
-
-Camera read_camera(JsonObject camera) {
-  Camera out;
-  const std::string type = camera.word("type", {"perspective", "panorama", "sphere"});
-  out.type = type == "perspective" ? CameraType::perspective : CameraType::panorama;
-  const auto resolution = camera.numbers("resolution", 2, 1, kMostPixels);
-  if (resolution[0] != std::floor(resolution[0]) || resolution[1] != std::floor(resolution[1]))
-    camera.refuse("resolution", "expected two whole numbers, width and height in pixels");
-  if (resolution[0] * resolution[1] > static_cast<double>(kMostPixels))
-    camera.refuse("resolution", "asks for more than 268435456 pixels");
-  out.width = static_cast<int>(resolution[0]);
-  out.height = static_cast<int>(resolution[1]);
-  if (type == "sphere") {
-    out.fov_horizontal = 2 * std::numbers::pi;
-    out.fov_vertical = std::numbers::pi;
-  } else if (type == "panorama") {
-    const auto fov = camera.numbers("fov_deg", 2, 1e-9, 360);
-    if (fov[1] > 180) camera.refuse("fov_deg/1", "expected a vertical field of view of at most 180");
-    out.fov_horizontal = fov[0] * kRadians;
-    out.fov_vertical = fov[1] * kRadians;
-  } else {  // square pixels: the vertical field of view follows
-    out.fov_horizontal = camera.number("fov_deg", 1e-9, 179.9) * kRadians;
-    out.fov_vertical = 2 * std::atan(std::tan(0.5 * out.fov_horizontal) * out.height / out.width);
-  }
-  out.samples = camera.has("samples") ? static_cast<int>(camera.integer("samples", 1, 16)) : 1;
-  if (resolution[0] * resolution[1] * out.samples * out.samples > static_cast<double>(kMostPixels))
-    camera.refuse("samples", "asks for more than 268435456 rays");
-  orient(out, camera.number_or("azimuth_deg", 0, -1e6, 1e6) * kRadians,
-         camera.number_or("elevation_deg", 0, -90, 90) * kRadians,
-         camera.number_or("roll_deg", 0, -1e6, 1e6) * kRadians);
-  camera.finish();
   return out;
 }
 

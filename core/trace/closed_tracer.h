@@ -130,7 +130,7 @@ class ClosedTracer final : public Tracer {
       for (std::uint32_t i = 0; i < rays.count; ++i)
         if (rays.nearest[i] != 0)
           found.push({i, rays.nearest[i], rays.limit[i]});
-        else if (!(lookback_ < kFar) && rules_.sky[0] != 0)
+        else if (!(lookback_ < kFar) && rules_.sky[0] != 0 && rays.exists(i))
           found.push({i, rules_.sky[0], rays.limit[i]});
     };
     if (!rules_.onward) {
@@ -150,7 +150,9 @@ class ClosedTracer final : public Tracer {
              const BandRoom& room) const {
     const std::unique_ptr<Status[]> status(new Status[rays.count]);
     for (std::size_t i = 0; i < rays.count; ++i)
-      status[i] = lookback_ < kFar ? Status::lookback_reached : Status::sky;
+      status[i] = !rays.exists(i)    ? Status::outside
+                  : lookback_ < kFar ? Status::lookback_reached
+                                     : Status::sky;
     const auto record_objects = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
                                     const HitRoom& to) {
       with_type(objects_[number - 1], [&](const auto& placed) {

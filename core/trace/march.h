@@ -178,8 +178,9 @@ Look<S> look_at(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>
 template <class S, class Stepper, Metric M>
 void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights, Trails* trails) {
   constexpr int kRound = 12;
-  for (std::size_t i = 0; i < flights.count; ++i) flights.list[i] = static_cast<std::uint32_t>(i);
-  flights.listed = flights.count;
+  flights.listed = 0;
+  for (std::size_t i = 0; i < flights.count; ++i)
+    if (flights.status[i] != Status::outside) flights.list[flights.listed++] = static_cast<std::uint32_t>(i);
   while (flights.listed > 0) {
     std::size_t left = 0;
     flights.waits = 0;
