@@ -83,9 +83,13 @@ TEST(LiveScene, ReplacesNumbersOfTheScene) {
   expect_same(kGoedel, {{"metric", {{"a", 1.5}}}, {"camera", {{"fov_deg", {90, 45}}}}}, expected);
 }
 
+Camera camera_of(const Dataset& traced) {
+  return read_scene(traced.manifest.scene, "scene", metric_descriptions()).camera;
+}
+
 TEST(LiveScene, DirectionsBecomeAnglesWhenTheCameraTurns) {
   const auto read = [](const json& changes, int scale) {
-    return live(kCube).changed(changes, nullptr, scale).camera;
+    return camera_of(live(kCube).trace(changes, scale));
   };
   const Camera before = read(nullptr, 1);
   const auto &f = before.forward, &u = before.up, &l = before.left;
@@ -107,7 +111,7 @@ TEST(LiveScene, DirectionsBecomeAnglesWhenTheCameraTurns) {
 
 TEST(LiveScene, CoarserMapsKeepTheirShape) {
   for (const int scale : {2, 4, 8}) {
-    const Camera coarse = live(kCube).changed(nullptr, nullptr, scale).camera;
+    const Camera coarse = camera_of(live(kCube).trace(nullptr, scale));
     EXPECT_EQ(coarse.width, 6 * coarse.height);
     EXPECT_NEAR(coarse.height, 21.0 / scale, 1);
   }

@@ -58,8 +58,8 @@ void read_lights(JsonObject& root, Manifest& m) {
   if (m.format < 3) return;
   std::vector<ObjectEntry> lamps = entries_from(root, "lights");
   constexpr std::size_t kMost = 64;  // paths of all lamps
-  if (m.format == 3 && lamps.empty()) root.refuse("lights", "expected at least one lamp");
-  if (lamps.size() > kMost) root.refuse("lights", "expected at most 64 lamps");
+  if ((m.format == 3 && lamps.empty()) || lamps.size() > kMost)
+    root.refuse("lights", m.format == 3 ? "expected 1 to 64 lamps" : "expected at most 64 lamps");
   const long paths = lamps.empty() ? root.integer("light_paths", 0, 0)
                                    : root.integer("light_paths", 1, static_cast<long>(kMost / lamps.size()));
   m.set_lights(std::move(lamps), static_cast<int>(paths));

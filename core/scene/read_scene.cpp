@@ -1,6 +1,7 @@
 #include "core/scene/read_scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -101,6 +102,23 @@ Accuracy read_accuracy(JsonObject& root) {
   return out;
 }
 
+/// How far rays are followed: in lambda, or {"lambda", "t"}. A limit of time alone stands in place of a
+/// default in lambda.
+void read_lookback(JsonObject& root, Scene& scene) {
+  if (!root.has("max_lookback")) return;
+  if (!root.at("max_lookback").is_object()) {
+    scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
+    return;
+  }
+  JsonObject limits = root.object("max_lookback");
+  if (!limits.has("lambda") && !limits.has("t"))
+    root.refuse("max_lookback", "expected lambda or t, or both, or a number");
+  scene.max_lookback = limits.has("lambda") ? limits.number("lambda", 1e-300, kLargest)
+                                            : std::numeric_limits<double>::infinity();
+  if (limits.has("t")) scene.max_lookback_t = limits.number("t", 1e-300, kLargest);
+  limits.finish();
+}
+
 /// How rays are followed.
 void read_paths(JsonObject& root, const MetricDescription& metric, Scene& scene) {
   scene.integrated = root.word("paths", {"closed", "integrated"},
@@ -123,7 +141,7 @@ Scene read_scene(const std::string& text, const std::string& place,
   const MetricDescription& metric = read_metric(root.object("metric"), metrics, scene);
   scene.observer = read_observer(root.object("observer"));
   scene.camera = read_camera(root.object("camera"));
-  if (root.has("max_lookback")) scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
+  read_lookback(root, scene);
   read_paths(root, metric, scene);
   std::set<std::string> names;
   std::array<bool, 3> sky{};

@@ -31,6 +31,7 @@ json setting(const Scene& scene) {
         {"rtol", scene.accuracy.rtol},
         {"atol", scene.accuracy.atol},
         {"integrator", std::string(kIntegratorNames[static_cast<std::size_t>(scene.accuracy.integrator)])}};
+  if (std::isfinite(scene.max_lookback_t)) paths["max_lookback_t"] = scene.max_lookback_t;
   json records = json::object();
   if (scene.records.max_hits > 0) records["max_hits"] = scene.records.max_hits;
   if (scene.records.max_order != Records::kAnyOrder) records["order"] = scene.records.max_order;
@@ -57,6 +58,7 @@ json setting(const Scene& scene) {
 
 int format_of(const Scene& scene) {
   const CameraType camera = scene.camera.type;
+  if (std::isfinite(scene.max_lookback_t)) return 4;
   if (camera != CameraType::perspective && camera != CameraType::panorama) return 4;
   return scene.lights.lamps.empty() ? 2 : 3;
 }

@@ -21,6 +21,7 @@ class IntegratedTracer final : public Tracer {
     setting_ = {
         {metric}, scene.accuracy,        std::min(scene.max_lookback, kFar), objects_.get(), 0, rules_.sky, 0,
         kFar,     scene.records.max_hits};
+    setting_.earliest = observation_[0] - std::min(scene.max_lookback_t, kFar);
     const Matrix4<double> g = metric.g(observation_);
     for (std::size_t a = 0; a < 4; ++a) departure_.lowered[a] = g * tetrad_.e[a];
   }
