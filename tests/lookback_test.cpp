@@ -171,7 +171,7 @@ TEST(Lookback, IsReadInBothForms) {
   EXPECT_EQ(format_of(read({{"lambda", 7}})), 2);
   EXPECT_EQ(format_of(read({{"t", 7}, {"lambda", 3}})), 4);
   for (const auto& [lookback, place] :
-       {std::pair<json, const char*>{json::object(), "/max_lookback: expected lambda or t"},
+       {std::pair<json, const char*>{json::object(), "/max_lookback: expected a number, or lambda"},
         {{{"t", 0}}, "/max_lookback/t: "},
         {{{"t", -1}}, "/max_lookback/t: "},
         {{{"t", "1"}}, "/max_lookback/t: expected a number"},

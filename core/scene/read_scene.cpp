@@ -112,7 +112,7 @@ void read_lookback(JsonObject& root, Scene& scene) {
   }
   JsonObject limits = root.object("max_lookback");
   if (!limits.has("lambda") && !limits.has("t"))
-    root.refuse("max_lookback", "expected lambda or t, or both, or a number");
+    root.refuse("max_lookback", "expected a number, or lambda or t or both");
   scene.max_lookback = limits.has("lambda") ? limits.number("lambda", 1e-300, kLargest)
                                             : std::numeric_limits<double>::infinity();
   if (limits.has("t")) scene.max_lookback_t = limits.number("t", 1e-300, kLargest);
