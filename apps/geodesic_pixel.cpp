@@ -102,6 +102,8 @@ Inquiry inquire_pixel(const GeodesicOptions& options) {
     throw InputError("--paths", "the observer's frame \"normal\" needs integrated paths");
   scene.camera.samples = 1;  // the ray through the centre
   traced.pixel = pixel_of(options.pixel, scene.camera);
+  if (!host::has_ray(scene.camera, traced.pixel[0] + 0.5, traced.pixel[1] + 0.5))
+    throw InputError("--pixel", "lies outside the camera's field of view; expected one within the circle");
   const auto tracer = file.read([&] { return prepare_scene(*out.spacetime, scene, options.scene); });
   trace(*tracer, traced);
 

@@ -12,20 +12,10 @@
 #include "core/base/error.h"
 #include "core/base/frame_numbers.h"
 #include "core/base/json.h"
+#include "core/trace/trace_scene.h"
 #include "metrics/registry.h"
 
 namespace nullcone {
-
-namespace {
-
-/// The least that holds the scene.
-int format_of(const Scene& scene) {
-  Manifest out;
-  out.set_lights(std::vector<ObjectEntry>(scene.lights.lamps.size()), scene.lights.paths);
-  return out.format;
-}
-
-}  // namespace
 
 std::string unlike(const std::string& path, const Scene& scene, const std::optional<Shard>& shard) {
   const int height = scene.camera.height;

@@ -26,6 +26,11 @@ struct Goedel {
     return u[0] * (2 * std::sqrt(1 - 0.5 * (beta_x * beta_x + beta_y * beta_y)) - 1);
   }
 
+  /// dt/dlambda = 1 - A(v), the energy being 1. At the distance 2a chi from the axis, and at the angle alpha
+  /// with the outward direction, A(v) = sqrt2 s sin(alpha) tanh(chi) with s = |v| <= 1. As v turns by
+  /// -sqrt2/a, d/dlambda A(v) = -sqrt2 s cos(alpha) tanh(chi) (sqrt2 + s sin(alpha) tanh(chi))/a.
+  double bend_of_time() const { return (2 + kSqrt2) / a; }
+
   /// ds^2 = (dt + A)^2 - h - dz^2, components in (t, x, y, z).
   template <class S>
   Matrix4<S> g(const Vec4<S>& X) const {

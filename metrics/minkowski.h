@@ -15,6 +15,7 @@ struct Minkowski {
   double default_lookback() const { return std::numeric_limits<double>::infinity(); }
   /// dt/dtau of the worldline with 4-velocity u.
   double mean_rate(const Vec4<double>& u) const { return u[0]; }
+  double bend_of_time() const { return 0; }
 
   template <class S>
   Matrix4<S> g(const Vec4<S>&) const {

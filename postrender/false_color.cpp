@@ -34,7 +34,8 @@ constexpr std::array<Srgb, kStatusNames.size()> kStatusColors = {{{0.93, 0.90, 0
                                                                   {0.45, 0.35, 0.65},
                                                                   {0.90, 0.10, 0.10},
                                                                   {1.00, 0.20, 0.85},
-                                                                  {0.30, 0.30, 0.30}}};
+                                                                  {0.30, 0.30, 0.30},
+                                                                  {0.05, 0.05, 0.05}}};
 
 Rgb category_color(const std::string& channel, float value) {
   const auto number = static_cast<std::uint32_t>(value);

@@ -95,7 +95,8 @@ TEST_F(DatasetFile, AManifestIsReadStrictly) {
     const std::string found = complaint(with_manifest(bytes, from, to));
     EXPECT_NE(found.find(expected), std::string::npos) << from << " -> " << to << ": '" << found << "'";
   };
-  says("\"format\":2", "\"format\":4", "use a newer nullcone");
+  says("\"format\":2", "\"format\":5", "use a newer nullcone");
+  says("\"format\":2", "\"format\":4", "/lights: missing");
   says("\"format\":2", "\"format\":3", "/lights: missing");
   says("\"format\":2", "\"format\":0", "/format");
   says("\"format\":2", "\"format\":1", "unknown");

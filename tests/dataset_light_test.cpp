@@ -122,6 +122,18 @@ TEST(Light, IsAbsentWhereThereAreNoLamps) {
   EXPECT_EQ(plain["format"], 2);
   EXPECT_FALSE(plain.contains("lights"));
   EXPECT_FALSE(plain.contains("light_paths"));
+
+  Dataset later = sample();  // from format 4 on it is said that there are none
+  later.manifest.format = 4;
+  json told = json::parse(manifest_to_json(later.manifest));
+  EXPECT_EQ(told["lights"], json::array());
+  EXPECT_EQ(told["light_paths"], 0);
+  const Manifest read = manifest_from_json(told.dump(), "m");
+  EXPECT_EQ(read.format, 4);
+  EXPECT_TRUE(read.lights.empty());
+  EXPECT_FALSE(read.channels.has("light"));
+  told["light_paths"] = 1;
+  EXPECT_THROW(manifest_from_json(told.dump(), "m"), InputError);
 }
 
 /// A manifest that says of light what is not so.

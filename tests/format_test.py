@@ -118,6 +118,11 @@ def fingerprints(path, manifest):
 
 files = [tools.trace(goedel_scene(source, [66, 18]), "goedel.exr"), tools.trace(flat_scene([14, 21], 3), "flat.exr"),
          tools.trace(black_hole_scene([24, 20]), "hole.exr"), tools.trace(lit_scene([7, 11], 2), "lit.exr")]
+kDome = {"type": "fisheye", "fov_deg": 100, "resolution": [9, 11], "samples": 2}
+files += [tools.trace({**flat_scene([9, 9], 2), "camera": kDome, "max_lookback": {"t": 2.9}}, "dome.exr"), tools.trace({**lit_scene([9, 9], 2), "camera": kDome}, "lit_dome.exr")]
+formats = {"lit.exr": 3, "dome.exr": 4, "lit_dome.exr": 4}
+for path in files:
+    tools.run("info", "--verify", path)
 everything, settings = [], []
 for path in files:
     manifest = json.loads(headers(path)[0]["nullconeManifest"][1])
@@ -127,7 +132,7 @@ for path in files:
     settings += leaves({key: value for key, value in manifest["setting"].items() if value})
     light = [f"light.{lamp['name']}.{n}.{c['name']}" for lamp in manifest.get("lights", []) for n in range(manifest["light_paths"]) for c in code["light"]]
     checks.same(manifest["channels"], [c["name"] for c in code["hits"] if c["name"] in manifest["channels"]] + light, "order of channels")
-    checks.same(manifest["format"], 3 if path == "lit.exr" else 2, "format of a fresh file")
+    checks.same(manifest["format"], formats.get(path, 2), "format of a fresh file")
     checks.same(set(deep(path)[0].channelnames), set(manifest["channels"]), f"{path}: channels of the deep part")
     compare_attributes(path)
     hash_of_file(path)

@@ -37,6 +37,14 @@ inline const json kGoedel =
   "lights": {"lamps": [{"name": "lamp", "worldline": {"type": "static", "event": [0, 0.8, 0.1, 0]},
                         "body": "still"}]}})");
 
+/// All round, by directions.
+inline const json kCube = [] {
+  json out = kFlat;
+  out["camera"] = json::parse(
+      R"({"type": "cube_map", "resolution": [126, 21], "forward": [1, 2, 1], "up": [0.3, 0, 1]})");
+  return out;
+}();
+
 inline Manifest manifest_of(const json& scene) {
   Manifest out;
   out.set_size(1, 1);

@@ -75,6 +75,16 @@ std::vector<std::string> scenes() {
                                   smaller(hole, 27, 21),
                                   smaller(wormhole, 19, 15),
                                   smaller(spheres.dump(), 24, 13)};
+  // Maps of the sky: lanes of a pack on different faces, and such without a ray.
+  json cube = json::parse(resting), tetrahedron = cube, fisheye = json::parse(hole);
+  cube["camera"] = {{"type", "cube_map"}, {"resolution", {246, 41}}};
+  tetrahedron["camera"] = {{"type", "tetrahedron_map"}, {"resolution", {142, 71}}};
+  fisheye["camera"].update(
+      {{"type", "fisheye"}, {"fov_deg", 150}, {"resolution", {kSanitized ? 21 : 61, 19}}});
+  for (json& scene : std::array{cube, tetrahedron, fisheye}) {
+    scene["records"] = {{"differentials", true}};
+    out.push_back(scene.dump());
+  }
   for (const json& scene : {earth, json::parse(moving), json::parse(resting), json::parse(hole), spheres})
     out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
   return out;

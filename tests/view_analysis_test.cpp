@@ -190,6 +190,14 @@ TEST(ViewImages, MeetAtTheEdgesOfAPanoramaAllAround) {
   }
 }
 
+TEST(ViewImages, EndAtTheEdgesOfACubesFaces) {
+  Dataset data = drawn({"aaa         ", "   a        ", "         aaa"});
+  data.manifest.setting = R"({"camera":{"type":"tetrahedron_map","fov_rad":[6.283185307179586,3.1]}})";
+  EXPECT_EQ(images_of(data, "earth")["images"].size(), 2u);  // the last row meets nothing
+  data.manifest.setting = R"({"camera":{"type":"cube_map","fov_rad":[6.283185307179586,3.1]}})";
+  EXPECT_EQ(images_of(data, "earth")["images"].size(), 4u);  // two columns a face
+}
+
 TEST(ViewImages, OfSeveralCrossingsAPixelAreTwoWhereOrdersDiffer) {
   const Dataset data = make_dataset(3, 2, {{"earth"}}, [](int x, int) {
     TestHit near, behind;

@@ -30,6 +30,8 @@ TEST(LiveScene, RefusesWhatIsNoChange) {
       {&kFlat, {{"observer", {{"event", {0, 10, 0.5, 0}}}}}, "scene: /objects/0: 'ball' holds the observer"},
       {&kFlat, {{"camera", {{"fov_deg", {40, 20}}}}}, "scene: /camera/fov_deg: expected a number"},
       {&kGoedel, {{"camera", {{"fov_deg", 40}}}}, "scene: /camera/fov_deg: expected a list of 2"},
+      {&kCube, {{"camera", {{"fov_deg", 40}}}}, "scene: /camera/fov_deg: unknown key"},
+      {&kCube, {{"camera", {{"resolution", {90, 16}}}}}, "scene: /camera/resolution: expected a width of 6"},
       {&kFlat, {{"camera", {{"samples", 16}}}}, "scene: /camera/samples: unknown key"},
       {&kFlat, {{"camera", {{"elevation_deg", 91}}}}, "scene: /camera/elevation_deg: is 91"},
       {&kFlat, {{"camera", {{"resolution", {15, 100}}}}}, "scene: /camera/resolution/0: is 15"},

@@ -2,6 +2,7 @@
 #include "apps/view/live.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/record/dataset_file.h"
 #include "core/trace/trace_scene.h"
@@ -80,6 +81,40 @@ TEST(LiveScene, ReplacesNumbersOfTheScene) {
   expected["metric"]["a"] = 1.5;
   expected["camera"]["fov_deg"] = {90, 45};
   expect_same(kGoedel, {{"metric", {{"a", 1.5}}}, {"camera", {{"fov_deg", {90, 45}}}}}, expected);
+}
+
+Camera camera_of(const Dataset& traced) {
+  return read_scene(traced.manifest.scene, "scene", metric_descriptions()).camera;
+}
+
+TEST(LiveScene, DirectionsBecomeAnglesWhenTheCameraTurns) {
+  const auto read = [](const json& changes, int scale) {
+    return camera_of(live(kCube).trace(changes, scale));
+  };
+  const Camera before = read(nullptr, 1);
+  const auto &f = before.forward, &u = before.up, &l = before.left;
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const double azimuth = kDegrees * std::atan2(f[1], f[0]), elevation = kDegrees * std::asin(f[2]);
+  EXPECT_EQ(read({{"observer", {{"velocity", {0, 0.1, 0}}}}}, 1).forward, f);
+  for (const json& same : {json{{"azimuth_deg", azimuth}}, json{{"elevation_deg", elevation}},
+                           json{{"azimuth_deg", azimuth},
+                                {"elevation_deg", elevation},
+                                {"roll_deg", kDegrees * std::atan2(l[2], u[2])}}}) {
+    const Camera found = read({{"camera", same}}, 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(found.forward[i], f[i], 1e-14);
+      EXPECT_NEAR(found.up[i], u[i], 1e-14);
+    }
+  }
+  EXPECT_NEAR(read({{"camera", {{"elevation_deg", 10}}}}, 1).forward[2], std::sin(10 / kDegrees), 1e-14);
+}
+
+TEST(LiveScene, CoarserMapsKeepTheirShape) {
+  for (const int scale : {2, 4, 8}) {
+    const Camera coarse = camera_of(live(kCube).trace(nullptr, scale));
+    EXPECT_EQ(coarse.width, 6 * coarse.height);
+    EXPECT_NEAR(coarse.height, 21.0 / scale, 1);
+  }
 }
 
 TEST(LiveScene, MovingObjectsKeepTheirAxes) {

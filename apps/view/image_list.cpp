@@ -25,9 +25,16 @@ constexpr std::uint32_t kLeftOut = 0xffffffffU;
 bool closes_on_itself(const Manifest& manifest) {
   const json setting = json::parse(manifest.setting, nullptr, false);
   const json::json_pointer type("/camera/type"), fov("/camera/fov_rad/0");
-  return setting.is_object() && setting.contains(type) && setting[type] == "panorama" &&
-         setting.contains(fov) && setting[fov].is_number() &&
-         setting[fov].get<double>() > 2 * std::numbers::pi * (1 - 1e-12);
+  return setting.is_object() && setting.contains(type) &&
+         (setting[type] == "panorama" || setting[type] == "tetrahedron_map") && setting.contains(fov) &&
+         setting[fov].is_number() && setting[fov].get<double>() > 2 * std::numbers::pi * (1 - 1e-12);
+}
+
+/// How many pictures stand side by side.
+int cells_of(const Manifest& manifest) {
+  const json setting = json::parse(manifest.setting, nullptr, false);
+  const json::json_pointer type("/camera/type");
+  return setting.is_object() && setting.contains(type) && setting[type] == "cube_map" ? 6 : 1;
 }
 
 /// Finite values of a channel.
@@ -198,7 +205,7 @@ ordered_json told(const Seen& image, std::size_t number, const Manifest& manifes
 ordered_json images_of(const Dataset& dataset, const std::string& object) {
   const Manifest& manifest = dataset.manifest;
   const std::uint32_t id = number_of_object(manifest, object);
-  const Regions regions = find_regions(dataset, id, closes_on_itself(manifest));
+  const Regions regions = find_regions(dataset, id, closes_on_itself(manifest), cells_of(manifest));
   std::vector<Seen> images = gather(dataset, id, regions, choose(regions));
   const bool timed = dataset.hits.channels.has("t");
   std::ranges::stable_sort(images, {}, [&](const Seen& image) { return image.place(timed); });

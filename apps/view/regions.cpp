@@ -61,10 +61,11 @@ Regions gather(const Dataset& dataset, std::uint32_t id) {
 }
 
 /// Joins what stands at `pixel` with its neighbours to the left and above. Those neighbours that touch one
-/// another are joined already: the one above with all others, the left one with that above it.
-void join_before(const Regions& all, std::size_t width, std::size_t pixel, Sets& sets) {
-  const std::size_t x = pixel % width;
-  const bool top = pixel < width, left = x == 0, right = x + 1 == width;
+/// another are joined already: the one above with all others, the left one with that above it. `cell`:
+/// the width of what is connected.
+void join_before(const Regions& all, std::size_t width, std::size_t cell, std::size_t pixel, Sets& sets) {
+  const std::size_t x = pixel % width % cell;
+  const bool top = pixel < width, left = x == 0, right = x + 1 == cell;
   for (std::uint32_t i = all.first[pixel]; i < all.first[pixel + 1]; ++i) {
     const auto join = [&](bool outside, std::size_t back) {
       const std::uint32_t other = outside ? kNone : find_at(all, pixel - back, all.order[i]);
@@ -98,12 +99,13 @@ std::uint32_t Regions::at(std::size_t pixel, std::uint32_t wanted) const {
   return region[find_at(*this, pixel, wanted)];
 }
 
-Regions find_regions(const Dataset& dataset, std::uint32_t id, bool closed) {
+Regions find_regions(const Dataset& dataset, std::uint32_t id, bool closed, int cells) {
   Regions out = gather(dataset, id);
   const auto width = static_cast<std::size_t>(dataset.manifest.width);
   // Step 1: neighbours.
   Sets sets(out.order.size());
-  for (std::size_t pixel = 0; pixel < dataset.pixels(); ++pixel) join_before(out, width, pixel, sets);
+  const std::size_t cell = std::max<std::size_t>(width / static_cast<std::size_t>(cells), 1);
+  for (std::size_t pixel = 0; pixel < dataset.pixels(); ++pixel) join_before(out, width, cell, pixel, sets);
   std::vector<std::uint32_t> across;
   if (closed) across = join_edges(out, width, sets);
   // Step 2: numbers. The first member of a set comes before all others.

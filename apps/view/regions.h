@@ -22,7 +22,8 @@ struct Regions {
 };
 
 /// Of the object with this number. Neighbours by sides and corners that have the same order are connected;
-/// `closed`: also those at the left and the right edge of the picture.
-Regions find_regions(const Dataset& dataset, std::uint32_t id, bool closed);
+/// `closed`: also those at the left and the right edge of the picture; `cells`: so many pictures of equal
+/// width stand side by side, between which nothing is connected.
+Regions find_regions(const Dataset& dataset, std::uint32_t id, bool closed, int cells = 1);
 
 }  // namespace nullcone::view

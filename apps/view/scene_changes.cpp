@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
 
 #include "apps/view/thin.h"
 #include "core/base/json.h"
+#include "core/scene/read_camera.h"
 #include "core/scene/read_placing.h"
 
 namespace nullcone::view {
@@ -46,9 +49,27 @@ void change_observer(JsonObject changes, json& scene) {
   changes.finish();
 }
 
+/// Of a camera that is given by directions, the angles.
+void use_angles(json& scene) {
+  const Camera camera = read_camera(JsonObject(scene, "scene", "/camera"));
+  const Triple &forward = camera.forward, &left = camera.left;
+  const double flat = std::hypot(forward[0], forward[1]);
+  const bool upright = flat < 1e-9;  // azimuth and roll are one then: all of it is azimuth
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  scene.erase("forward");
+  scene.erase("up");
+  scene["azimuth_deg"] =
+      kDegrees * (upright ? std::atan2(-left[0], left[1]) : std::atan2(forward[1], forward[0]));
+  scene["elevation_deg"] = kDegrees * std::atan2(forward[2], flat);
+  scene["roll_deg"] = upright ? 0 : kDegrees * std::atan2(left[2], camera.up[2]);
+}
+
 void change_camera(JsonObject changes, json& scene) {
-  for (const char* key : {"azimuth_deg", "elevation_deg", "roll_deg"})
-    if (changes.has(key)) copy_number(changes, key, scene);
+  for (const char* key : {"azimuth_deg", "elevation_deg", "roll_deg"}) {
+    if (!changes.has(key)) continue;
+    if (scene.contains("forward")) use_angles(scene);
+    copy_number(changes, key, scene);
+  }
   if (changes.has("fov_deg")) {
     if (scene.value("fov_deg", json()).is_array())
       changes.numbers("fov_deg", 2);
@@ -151,7 +172,14 @@ void apply_changes(const json& changes, const MetricDescription& metric, json& s
 void make_coarser(json& scene, int step) {
   if (step == 1) return;
   json& camera = scene.at("camera");
-  for (json& side : camera.at("resolution")) side = thinned(static_cast<int>(side.get<double>()), step);
+  json& size = camera.at("resolution");
+  const double width = size[0].get<double>(), height = size[1].get<double>();
+  const std::string type = camera.at("type");
+  size[1] = thinned(static_cast<int>(height), step);
+  if (type == "cube_map" || type == "tetrahedron_map")  // their faces stay square
+    size[0] = size[1].get<int>() * std::lround(width / height);
+  else
+    size[0] = thinned(static_cast<int>(width), step);
   camera.erase("samples");
 }
 

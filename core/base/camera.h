@@ -3,23 +3,29 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string_view>
 
-#include "core/base/vector.h"
+#include "core/base/faces.h"
+#include "core/base/projections.h"
 
 namespace nullcone {
 
 /// Scan lines a band: the unit of tracing, of writing, of fingerprints and of memory.
 inline constexpr int kBandLines = 16;
 
-enum class CameraType { perspective, panorama };
+enum class CameraType { perspective, panorama, fisheye, cube_map, tetrahedron_map };
+inline constexpr std::array<std::string_view, 5> kCameraNames = {"perspective", "panorama", "fisheye",
+                                                                 "cube_map", "tetrahedron_map"};
 
-/// Plain data; angles in radians. A full sphere is a panorama of 2 pi x pi.
+/// Plain data; angles in radians. A full sphere is a panorama of 2 pi x pi; maps of all directions have these
+/// angles too. A fisheye's are those of its circle.
 struct Camera {
   CameraType type = CameraType::panorama;
   int width = 0, height = 0;
   int samples = 1;  ///< rays a pixel, along each side
   double fov_horizontal = 0, fov_vertical = 0;
-  /// Look direction of the centre, direction to the left edge, and up; orthonormal, in the camera's tetrad.
+  /// Look direction of the centre (of maps: of their front), direction to the left edge, and up; orthonormal,
+  /// in the camera's tetrad.
   std::array<double, 3> forward = {1, 0, 0}, left = {0, 1, 0}, up = {0, 0, 1};
 };
 
@@ -31,43 +37,71 @@ inline Camera sample_camera(Camera camera) {
   return camera;
 }
 
+/// The radius of a fisheye's circle, in pixels.
+inline double circle_radius(const Camera& camera) { return 0.5 * std::min(camera.width, camera.height); }
+
 }  // namespace nullcone
 
 NULLCONE_KERNEL_BEGIN
 
-/// The unit look direction m at picture coordinates (x, y), in pixels from the top left corner; the centre of
-/// pixel (i, j) is (i + 0.5, j + 0.5). The photon that arrives there moves along -m. Azimuth grows to the
-/// left.
+/// The unit look direction m at picture coordinates (x + dx, y + dy), in pixels from the top left corner; the
+/// centre of pixel (i, j) is (i + 0.5, j + 0.5). The photon that arrives there moves along -m. Azimuth grows
+/// to the left. A map that consists of faces is continued beyond the edges of the face to which (x, y)
+/// belongs.
 template <class S>
-Vec3<S> look_direction(const Camera& camera, const S& x, const S& y) {
-  const auto forward = convert<S>(camera.forward), left = convert<S>(camera.left), up = convert<S>(camera.up);
-  const S across = S(0.5) - x * S(1.0 / camera.width), along = S(0.5) - y * S(1.0 / camera.height);
-  if (camera.type == CameraType::perspective) {
-    const auto horizontal = sincos(0.5 * camera.fov_horizontal), vertical = sincos(0.5 * camera.fov_vertical);
-    const S to_left = across * S(2 * horizontal.sin / horizontal.cos);
-    const S to_top = along * S(2 * vertical.sin / vertical.cos);
-    return normalised(forward + to_left * left + to_top * up);
+Vec3<S> look_direction(const Camera& camera, const S& x, const S& y, const S& dx = S(0.0),
+                       const S& dy = S(0.0)) {
+  const CameraAxes<S> axes{convert<S>(camera.forward), convert<S>(camera.left), convert<S>(camera.up)};
+  const S over_width(1.0 / camera.width), over_height(1.0 / camera.height), at_x = x + dx, at_y = y + dy;
+  if (camera.type == CameraType::cube_map)
+    return look_on_faces(kCube, axes, x * over_width, y * over_height, dx * over_width, dy * over_height);
+  if (camera.type == CameraType::tetrahedron_map)
+    return look_on_faces(kTetrahedron, axes, x * over_width, y * over_height, dx * over_width,
+                         dy * over_height);
+  if (camera.type == CameraType::fisheye) {
+    const S over_radius(1 / circle_radius(camera));
+    return look_in_fisheye(axes, 0.5 * camera.fov_horizontal, (S(0.5 * camera.width) - at_x) * over_radius,
+                           (S(0.5 * camera.height) - at_y) * over_radius);
   }
-  const auto azimuth = sincos(across * S(camera.fov_horizontal));
-  const auto elevation = sincos(along * S(camera.fov_vertical));
-  return elevation.cos * (azimuth.cos * forward + azimuth.sin * left) + elevation.sin * up;
+  const S across = S(0.5) - at_x * over_width, along = S(0.5) - at_y * over_height;
+  if (camera.type == CameraType::perspective)
+    return look_in_perspective(axes, camera.fov_horizontal, camera.fov_vertical, across, along);
+  return look_in_panorama(axes, camera.fov_horizontal, camera.fov_vertical, across, along);
 }
 
-/// Picture coordinates of a look direction (any length). Outside the picture, or behind a perspective camera,
-/// the result lies outside [0, width] x [0, height].
+/// Whether there is a direction to look in: not beyond the circle of a fisheye.
+template <class S>
+Mask<S> has_ray(const Camera& camera, const S& x, const S& y) {
+  if (camera.type != CameraType::fisheye) return x == x;
+  const S across = S(0.5 * camera.width) - x, along = S(0.5 * camera.height) - y;
+  const double radius = circle_radius(camera);
+  return across * across + along * along <= S(radius * radius);
+}
+
+/// Picture coordinates of a look direction (any length). Outside the picture, behind a perspective camera, or
+/// beyond a fisheye's field of view, the result lies outside [0, width] x [0, height].
 inline Vec<double, 2> picture_position(const Camera& camera, const Vec3<double>& look) {
-  const double f = dot(convert<double>(camera.forward), look), l = dot(convert<double>(camera.left), look),
-               u = dot(convert<double>(camera.up), look);
-  double across = 0, along = 0;
-  if (camera.type == CameraType::perspective) {
-    if (f <= 0) return {{-1.0, -1.0}};
-    across = 0.5 * l / (f * std::tan(0.5 * camera.fov_horizontal));
-    along = 0.5 * u / (f * std::tan(0.5 * camera.fov_vertical));
+  constexpr Vec<double, 2> kNowhere = {{-1.0, -1.0}};
+  const Vec3<double> seen = {{dot(convert<double>(camera.forward), look),
+                              dot(convert<double>(camera.left), look),
+                              dot(convert<double>(camera.up), look)}};
+  Vec<double, 2> part{};  // of the picture, from its centre to the left and upwards
+  if (camera.type == CameraType::cube_map) {
+    part = place_on_faces(kCube, seen);
+  } else if (camera.type == CameraType::tetrahedron_map) {
+    part = place_on_faces(kTetrahedron, seen);
+  } else if (camera.type == CameraType::fisheye) {
+    const Vec<double, 2> at = place_in_fisheye(0.5 * camera.fov_horizontal, seen);
+    if (std::hypot(at[0], at[1]) > 1 + 1e-12) return kNowhere;
+    const double radius = circle_radius(camera);
+    part = {{at[0] * radius / camera.width, at[1] * radius / camera.height}};
+  } else if (camera.type == CameraType::perspective) {
+    if (seen[0] <= 0) return kNowhere;
+    part = place_in_perspective(camera.fov_horizontal, camera.fov_vertical, seen);
   } else {
-    across = std::atan2(l, f) / camera.fov_horizontal;
-    along = std::atan2(u, std::hypot(f, l)) / camera.fov_vertical;
+    part = place_in_panorama(camera.fov_horizontal, camera.fov_vertical, seen);
   }
-  return {{(0.5 - across) * camera.width, (0.5 - along) * camera.height}};
+  return {{(0.5 - part[0]) * camera.width, (0.5 - part[1]) * camera.height}};
 }
 
 NULLCONE_KERNEL_END

@@ -69,7 +69,7 @@ inline constexpr std::array kLightChannelInfo = {
 
 /// Channels of the flat part `rays`, one value a ray.
 inline constexpr std::array kRayChannelInfo = {
-    ChannelInfo{"status", true, "1", "0 to 7", "how the ray ended (see Status)"},
+    ChannelInfo{"status", true, "1", "0 to 8", "how the ray ended (see Status)"},
     ChannelInfo{"steps", true, "1", "from 0", "evaluations of the path, or attempts of a step"},
     ChannelInfo{"error", false, "1", "from 0",
                 "estimated relative error at the end of the ray; 0 for closed forms"},

@@ -17,8 +17,10 @@ enum class Status : std::uint32_t {
   step_limit = 5,        ///< the search was given up: doubtful pixel
   not_finite = 6,        ///< numbers broke down: doubtful pixel
   not_traced = 7,        ///< tracing was interrupted before
+  outside = 8,           ///< beyond the camera's field of view: there is no ray
 };
-inline constexpr std::array<std::string_view, 8> kStatusNames = {
-    "hit", "sky", "captured", "left_chart", "lookback_reached", "step_limit", "not_finite", "not_traced"};
+inline constexpr std::array<std::string_view, 9> kStatusNames = {
+    "hit",        "sky",        "captured",   "left_chart", "lookback_reached",
+    "step_limit", "not_finite", "not_traced", "outside"};
 
 }  // namespace nullcone

@@ -19,7 +19,7 @@ struct ObjectEntry {
   bool operator==(const ObjectEntry&) const = default;
 };
 
-inline constexpr int kNewestFormat = 3;
+inline constexpr int kNewestFormat = 4;
 
 /// What only the end of tracing tells.
 struct Effort {
@@ -58,7 +58,7 @@ struct Manifest {
     lights = std::move(lamps);
     light_paths = paths;
     channels = channels | ChannelSet::of("light");
-    format = 3;
+    format = std::max(format, 3);
   }
   /// A whole picture.
   void set_size(int w, int h) {

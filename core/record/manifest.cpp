@@ -53,13 +53,15 @@ json to_json(const std::vector<ObjectEntry>& entries) {
   return out;
 }
 
-/// What format 3 has added.
+/// What format 3 has added; from format 4 on there may be no lamps.
 void read_lights(JsonObject& root, Manifest& m) {
   if (m.format < 3) return;
   std::vector<ObjectEntry> lamps = entries_from(root, "lights");
   constexpr std::size_t kMost = 64;  // paths of all lamps
-  if (lamps.empty() || lamps.size() > kMost) root.refuse("lights", "expected 1 to 64 lamps");
-  const long paths = root.integer("light_paths", 1, static_cast<long>(kMost / lamps.size()));
+  if ((m.format == 3 && lamps.empty()) || lamps.size() > kMost)
+    root.refuse("lights", m.format == 3 ? "expected 1 to 64 lamps" : "expected at most 64 lamps");
+  const long paths = lamps.empty() ? root.integer("light_paths", 0, 0)
+                                   : root.integer("light_paths", 1, static_cast<long>(kMost / lamps.size()));
   m.set_lights(std::move(lamps), static_cast<int>(paths));
   m.effort.light_doubts =
       static_cast<std::uint64_t>(root.integer("light_doubts", 0, std::numeric_limits<long>::max()));

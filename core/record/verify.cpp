@@ -32,7 +32,7 @@ struct Bounds {
     if (range.starts_with("0 to ") || range.starts_with("from 0")) least = 0;
     if (range.starts_with("-1 to ")) least = -1;
     if (range.ends_with(" to 1")) most = 1;
-    if (range.ends_with(" to 7")) most = static_cast<double>(kStatusNames.size() - 1);
+    if (range.ends_with(" to 8")) most = static_cast<double>(kStatusNames.size() - 1);
   }
   bool hold(double x) const { return x >= least && x <= most; }  // not for NaN
 };
@@ -92,6 +92,10 @@ void Verifier::check_values(const Band& band) {
   const Hits& hits = band.hits;
   for (const std::uint32_t id : hits.id)
     if (id < 1 || id > manifest_.objects.size()) once("hits: an id names no object of the manifest");
+  if (manifest_.format < 4 &&
+      std::ranges::find(band.rays.status, static_cast<std::uint32_t>(Status::outside)) !=
+          band.rays.status.end())
+    once("rays: a status is 'outside', which files have from format 4 on");
   const auto samples = static_cast<std::uint32_t>(manifest_.samples * manifest_.samples);
   for (const std::uint32_t sample : hits.sample)
     if (sample >= samples) once("hits: a sample is not one of the pixel's " + std::to_string(samples));

@@ -18,18 +18,11 @@ std::array<double, N> to_array(const std::vector<double>& values) {
 
 double dot(const Triple& a, const Triple& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// A direction of any length but zero, normalised.
-Triple direction(JsonObject& object, std::string_view key, const std::vector<double>& fallback) {
-  const auto v = to_array<3>(object.numbers_or(key, fallback, -kLargest, kLargest));
-  const double length = std::sqrt(dot(v, v));
-  if (!(length > 1e-100)) object.refuse(key, "expected a direction, found (almost) zero");
-  return {v[0] / length, v[1] / length, v[2] / length};
-}
-
 }  // namespace
 
 std::array<Triple, 3> read_directions(JsonObject& object) {
-  const Triple z = direction(object, "z_axis", {0, 0, 1}), wish = direction(object, "y_axis", {0, 1, 0});
+  const Triple z = read_direction(object, "z_axis", {0, 0, 1}),
+               wish = read_direction(object, "y_axis", {0, 1, 0});
   Triple x = cross(wish, z);
   const double length = std::sqrt(dot(x, x));
   if (!(length > 1e-9)) object.refuse("y_axis", "expected a direction that is not parallel to z_axis");
@@ -41,6 +34,13 @@ double read_radius(JsonObject& shape) {
   const double out = shape.positive("radius");
   if (out > kLargest) shape.refuse("radius", "expected at most 1e15");
   return out;
+}
+
+Triple read_direction(JsonObject& object, std::string_view key, const std::vector<double>& fallback) {
+  const auto v = to_array<3>(object.numbers_or(key, fallback, -kLargest, kLargest));
+  const double length = std::sqrt(dot(v, v));
+  if (!(length > 1e-100)) object.refuse(key, "expected a direction, found (almost) zero");
+  return {v[0] / length, v[1] / length, v[2] / length};
 }
 
 Event read_event(JsonObject& object, std::string_view key) {
@@ -74,7 +74,7 @@ void read_axes(JsonObject& object, Placing& placing) {
 void read_spin(JsonObject& object, Placing& placing) {
   if (!object.has("spin")) return;
   JsonObject spin = object.object("spin");
-  placing.spin_axis = direction(spin, "axis", {0, 0, 1});
+  placing.spin_axis = read_direction(spin, "axis", {0, 0, 1});
   placing.spin = spin.number("rate_deg", -kLargest, kLargest) * std::numbers::pi / 180;
   spin.finish();
 }

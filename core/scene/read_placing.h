@@ -24,6 +24,9 @@ Event read_event(JsonObject& object, std::string_view key);
 /// Slower than light; at rest where the entry is left out.
 Triple read_velocity(JsonObject& object, std::string_view key);
 
+/// A direction of any length but zero, normalised.
+Triple read_direction(JsonObject& object, std::string_view key, const std::vector<double>& fallback);
+
 /// The entry `worldline` of something local.
 Worldline read_worldline(JsonObject& object);
 

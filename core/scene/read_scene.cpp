@@ -1,16 +1,17 @@
 #include "core/scene/read_scene.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/sha256.h"
+#include "core/scene/read_camera.h"
 #include "core/scene/read_lights.h"
+#include "core/scene/read_observer.h"
 #include "core/scene/read_placing.h"
 #include "core/scene/read_records.h"
 #include "core/scene/read_shape.h"
@@ -19,9 +20,6 @@
 namespace nullcone {
 
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
-constexpr long kMostPixels = 1L << 28;
 
 const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDescription> known,
                                      Scene& scene) {
@@ -41,96 +39,6 @@ const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDe
   }
   metric.finish();
   return *found;
-}
-
-Motion read_motion(JsonObject line) {
-  Motion out;
-  const std::string type = line.word("type", {"geodesic", "accelerated", "circular"});
-  out.event = read_event(line, "event");
-  if (type == "circular") {
-    out.type = Motion::Type::circular;
-    out.clockwise = line.boolean("clockwise", false);
-    if (!line.is_text("speed")) {
-      out.speed = line.number("speed", 0, 1);
-      if (out.speed == 1) line.refuse("speed", "is not slower than light; expected less than 1");
-    } else {
-      const bool free = line.word("speed", {"free", "closed"}) == "free";
-      out.pace = free ? Motion::Pace::free : Motion::Pace::closed;
-    }
-    if (out.event[1] == 0 && out.event[2] == 0)
-      line.refuse("event", "is on the axis; expected a place to go round it");
-  } else {
-    out.velocity = read_velocity(line, "velocity");
-  }
-  if (type == "accelerated") {
-    out.type = Motion::Type::accelerated;
-    const auto a = line.numbers("acceleration", 3, -1e100, 1e100);
-    std::ranges::copy(a, out.acceleration.begin());
-  }
-  line.finish();
-  return out;
-}
-
-Observer read_observer(JsonObject observer) {
-  Observer out;
-  if (observer.has("worldline")) {
-    out.moves = true;
-    out.motion = read_motion(observer.object("worldline"));
-    out.proper_time = observer.number_or("proper_time", 0, -kLargest, kLargest);
-  } else {
-    out.event = read_event(observer, "event");
-    out.velocity = read_velocity(observer, "velocity");
-  }
-  if (observer.word("frame", {"static", "normal"}, "static") == "normal") out.frame = ObserverFrame::normal;
-  observer.finish();
-  return out;
-}
-
-/// The frame of the camera: azimuth from e1 towards e2, elevation towards e3, then roll about the look
-/// direction.
-void orient(Camera& camera, double azimuth, double elevation, double roll) {
-  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation),
-               se = std::sin(elevation);
-  camera.forward = {ce * ca, ce * sa, se};
-  const Triple left = {-sa, ca, 0}, up = cross(camera.forward, left);
-  const double cr = std::cos(roll), sr = std::sin(roll);
-  for (std::size_t i = 0; i < 3; ++i) {
-    camera.left[i] = cr * left[i] + sr * up[i];
-    camera.up[i] = cr * up[i] - sr * left[i];
-  }
-}
-
-Camera read_camera(JsonObject camera) {
-  Camera out;
-  const std::string type = camera.word("type", {"perspective", "panorama", "sphere"});
-  out.type = type == "perspective" ? CameraType::perspective : CameraType::panorama;
-  const auto resolution = camera.numbers("resolution", 2, 1, kMostPixels);
-  if (resolution[0] != std::floor(resolution[0]) || resolution[1] != std::floor(resolution[1]))
-    camera.refuse("resolution", "expected two whole numbers, width and height in pixels");
-  if (resolution[0] * resolution[1] > static_cast<double>(kMostPixels))
-    camera.refuse("resolution", "asks for more than 268435456 pixels");
-  out.width = static_cast<int>(resolution[0]);
-  out.height = static_cast<int>(resolution[1]);
-  if (type == "sphere") {
-    out.fov_horizontal = 2 * std::numbers::pi;
-    out.fov_vertical = std::numbers::pi;
-  } else if (type == "panorama") {
-    const auto fov = camera.numbers("fov_deg", 2, 1e-9, 360);
-    if (fov[1] > 180) camera.refuse("fov_deg/1", "expected a vertical field of view of at most 180");
-    out.fov_horizontal = fov[0] * kRadians;
-    out.fov_vertical = fov[1] * kRadians;
-  } else {  // square pixels: the vertical field of view follows
-    out.fov_horizontal = camera.number("fov_deg", 1e-9, 179.9) * kRadians;
-    out.fov_vertical = 2 * std::atan(std::tan(0.5 * out.fov_horizontal) * out.height / out.width);
-  }
-  out.samples = camera.has("samples") ? static_cast<int>(camera.integer("samples", 1, 16)) : 1;
-  if (resolution[0] * resolution[1] * out.samples * out.samples > static_cast<double>(kMostPixels))
-    camera.refuse("samples", "asks for more than 268435456 rays");
-  orient(out, camera.number_or("azimuth_deg", 0, -1e6, 1e6) * kRadians,
-         camera.number_or("elevation_deg", 0, -90, 90) * kRadians,
-         camera.number_or("roll_deg", 0, -1e6, 1e6) * kRadians);
-  camera.finish();
-  return out;
 }
 
 Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken) {
@@ -163,6 +71,23 @@ Accuracy read_accuracy(JsonObject& root) {
   return out;
 }
 
+/// How far rays are followed: in lambda, or {"lambda", "t"}. A limit of time alone stands in place of a
+/// default in lambda.
+void read_lookback(JsonObject& root, Scene& scene) {
+  if (!root.has("max_lookback")) return;
+  if (!root.at("max_lookback").is_object()) {
+    scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
+    return;
+  }
+  JsonObject limits = root.object("max_lookback");
+  if (!limits.has("lambda") && !limits.has("t"))
+    root.refuse("max_lookback", "expected a number, or lambda or t or both");
+  scene.max_lookback = limits.has("lambda") ? limits.number("lambda", 1e-300, kLargest)
+                                            : std::numeric_limits<double>::infinity();
+  if (limits.has("t")) scene.max_lookback_t = limits.number("t", 1e-300, kLargest);
+  limits.finish();
+}
+
 /// How rays are followed.
 void read_paths(JsonObject& root, const MetricDescription& metric, Scene& scene) {
   scene.integrated = root.word("paths", {"closed", "integrated"},
@@ -185,7 +110,7 @@ Scene read_scene(const std::string& text, const std::string& place,
   const MetricDescription& metric = read_metric(root.object("metric"), metrics, scene);
   scene.observer = read_observer(root.object("observer"));
   scene.camera = read_camera(root.object("camera"));
-  if (root.has("max_lookback")) scene.max_lookback = root.number("max_lookback", 1e-300, kLargest);
+  read_lookback(root, scene);
   read_paths(root, metric, scene);
   std::set<std::string> names;
   std::array<bool, 3> sky{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -153,6 +154,8 @@ struct Scene {
   Observer observer;
   Camera camera;
   double max_lookback = 0;  ///< in lambda; infinity where rays may escape
+  /// In coordinate time: rays end where they first are so much earlier than the observation.
+  double max_lookback_t = std::numeric_limits<double>::infinity();
   bool integrated = false;  ///< rays are integrated, not taken from closed forms
   Accuracy accuracy = kBalanced;
   std::vector<Object> objects;

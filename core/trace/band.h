@@ -17,12 +17,14 @@ using Wide = Pack;
 struct BandRays {
   std::size_t count = 0, padded = 0;
   std::unique_ptr<double[]> memory;
-  std::array<double*, 4> k{};  ///< past-directed tangent in the static tetrad
-  double *limit = nullptr, *steps = nullptr;
+  std::array<double*, 4> k{};                  ///< past-directed tangent in the static tetrad
+  double *limit = nullptr, *steps = nullptr;   ///< limit: in lambda; below 0 where the camera has no ray
   double *lambda = nullptr, *taken = nullptr;  ///< of the search under way: how far, and how many steps
   std::unique_ptr<std::uint32_t[]> nearest;    ///< object number from 1, 0 for none
   std::unique_ptr<std::uint32_t[]> list;       ///< rays that a search or a record is about
   std::unique_ptr<bool[]> doubtful;
+
+  bool exists(std::size_t ray) const { return limit[ray] >= 0; }
 
   explicit BandRays(std::size_t rays)
       : count(rays),
@@ -77,20 +79,21 @@ struct CameraRays {
   Vec4<double> u;  ///< the camera's 4-velocity, in the static tetrad
   int first_line = 0;
 
-  /// The tangent, in the static tetrad, of the ray through picture coordinates (x, y).
+  /// The tangent, in the static tetrad, of the ray through picture coordinates (x + dx, y + dy), on the part
+  /// of the picture to which (x, y) belongs.
   template <class S>
-  Vec4<S> past(const S& x, const S& y) const {
-    return -seen_photon(convert<S>(u), look_direction(camera, x, y));
+  Vec4<S> past(const S& x, const S& y, double dx = 0, double dy = 0) const {
+    return -seen_photon(convert<S>(u), look_direction(camera, x, y, S(dx), S(dy)));
   }
   /// The tangents of rays at a part `h` of a pixel beside those of some rays of the band: to the right, to
-  /// the left, down, up.
+  /// the left, down, up. They lie beside one another in the sky too: past the edge of a face the map goes on.
   template <class S, class F>
   std::array<Vec4<S>, 4> beside(const Group<S>& group, double h, F&& ray_of) const {
     const auto width = static_cast<std::size_t>(camera.width);
     const S x = group.gather([&](std::size_t i) { return static_cast<double>(ray_of(i) % width) + 0.5; });
     const S y = group.gather(
         [&](std::size_t i) { return static_cast<double>(ray_of(i) / width) + (first_line + 0.5); });
-    return {past<S>(x + S(h), y), past<S>(x - S(h), y), past<S>(x, y + S(h)), past<S>(x, y - S(h))};
+    return {past(x, y, h), past(x, y, -h), past(x, y, 0, h), past(x, y, 0, -h)};
   }
 };
 
@@ -106,9 +109,10 @@ void aim(const CameraRays& from, double lookback, BandRays& rays) {
       y[lane] = line + 0.5;
       if (i + lane + 1 < rays.count && ++column == camera.width) column = 0, ++line;
     }
-    const Vec4<S> past = from.past<S>(Lanes<S>::load(x.data()), Lanes<S>::load(y.data()));
+    const S at_x = Lanes<S>::load(x.data()), at_y = Lanes<S>::load(y.data());
+    const Vec4<S> past = from.past(at_x, at_y);
     for (std::size_t c = 0; c < 4; ++c) Lanes<S>::store(past[c], rays.k[c] + i);
-    Lanes<S>::store(S(lookback), rays.limit + i);
+    Lanes<S>::store(select(has_ray(camera, at_x, at_y), S(lookback), S(-kFar)), rays.limit + i);
     Lanes<S>::store(S(0.0), rays.steps + i);
   }
 }

@@ -5,6 +5,7 @@
 #include "core/trace/details.h"
 #include "core/trace/hamilton.h"
 #include "core/trace/objects.h"
+#include "core/trace/time_limit.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -42,6 +43,7 @@ class ClosedTracer final : public Tracer {
         camera_{scene.camera, four_velocity(Vec3<double>{scene.observer.velocity})},
         observation_{scene.observer.event},
         lookback_(scene.max_lookback),
+        lookback_t_(scene.max_lookback_t),
         objects_(new AnyPlaced<M>[rules_.objects]),
         clocks_(new Clock[rules_.objects]),
         opacities_(new double[rules_.objects]),
@@ -77,6 +79,7 @@ class ClosedTracer final : public Tracer {
     camera.first_line = first_line;
     BandRays rays(static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera.camera.width));
     aim<Wide>(camera, lookback_, rays);
+    if (lookback_t_ < kFar) end_in_the_past<Wide>(metric_, observation_, lookback_t_, rays);
     for_each_object(true, [&](const auto& placed, std::uint32_t number) {
       search<Wide>(placed, number, observation_, resolution_, rays);
     });
@@ -115,6 +118,9 @@ class ClosedTracer final : public Tracer {
     return unfit.reason == nullptr;
   }
 
+  /// Whether rays end before they escape.
+  bool is_bounded() const { return lookback_ < kFar || lookback_t_ < kFar; }
+
   /// f(placed, number) for the objects at which rays end, or for the others.
   template <class F>
   void for_each_object(bool ends_rays, F&& f) const {
@@ -130,7 +136,7 @@ class ClosedTracer final : public Tracer {
       for (std::uint32_t i = 0; i < rays.count; ++i)
         if (rays.nearest[i] != 0)
           found.push({i, rays.nearest[i], rays.limit[i]});
-        else if (!(lookback_ < kFar) && rules_.sky[0] != 0)
+        else if (!is_bounded() && rules_.sky[0] != 0 && rays.exists(i))
           found.push({i, rules_.sky[0], rays.limit[i]});
     };
     if (!rules_.onward) {
@@ -150,7 +156,7 @@ class ClosedTracer final : public Tracer {
              const BandRoom& room) const {
     const std::unique_ptr<Status[]> status(new Status[rays.count]);
     for (std::size_t i = 0; i < rays.count; ++i)
-      status[i] = lookback_ < kFar ? Status::lookback_reached : Status::sky;
+      status[i] = !rays.exists(i) ? Status::outside : is_bounded() ? Status::lookback_reached : Status::sky;
     const auto record_objects = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
                                     const HitRoom& to) {
       with_type(objects_[number - 1], [&](const auto& placed) {
@@ -248,7 +254,7 @@ class ClosedTracer final : public Tracer {
   Wanted wanted_;
   CameraRays camera_;
   Vec4<double> observation_;
-  double lookback_;
+  double lookback_, lookback_t_;
   std::unique_ptr<AnyPlaced<M>[]> objects_;
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> opacities_;

@@ -31,6 +31,7 @@ json setting(const Scene& scene) {
         {"rtol", scene.accuracy.rtol},
         {"atol", scene.accuracy.atol},
         {"integrator", std::string(kIntegratorNames[static_cast<std::size_t>(scene.accuracy.integrator)])}};
+  if (std::isfinite(scene.max_lookback_t)) paths["max_lookback_t"] = scene.max_lookback_t;
   json records = json::object();
   if (scene.records.max_hits > 0) records["max_hits"] = scene.records.max_hits;
   if (scene.records.max_order != Records::kAnyOrder) records["order"] = scene.records.max_order;
@@ -40,7 +41,7 @@ json setting(const Scene& scene) {
                 {"velocity", o.velocity},
                 {"frame", o.frame == ObserverFrame::normal ? "normal" : "static"}}},
               {"camera",
-               {{"type", c.type == CameraType::perspective ? "perspective" : "panorama"},
+               {{"type", kCameraNames[static_cast<std::size_t>(c.type)]},
                 {"samples", c.samples},
                 {"fov_rad", {c.fov_horizontal, c.fov_vertical}},
                 {"forward", c.forward},
@@ -54,6 +55,13 @@ json setting(const Scene& scene) {
 }
 
 }  // namespace
+
+int format_of(const Scene& scene) {
+  const CameraType camera = scene.camera.type;
+  if (std::isfinite(scene.max_lookback_t)) return 4;
+  if (camera != CameraType::perspective && camera != CameraType::panorama) return 4;
+  return scene.lights.lamps.empty() ? 2 : 3;
+}
 
 Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& tracer) {
   Manifest out;
@@ -70,6 +78,7 @@ Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& 
   for (std::size_t i = 0; i < scene.lights.lamps.size(); ++i)
     lamps.push_back({scene.lights.lamps[i].name, tracer.lamp_tau_origin(i)});
   out.set_lights(std::move(lamps), scene.lights.paths);
+  out.format = format_of(scene);
   out.version = code_version();
   out.isa = spacetime.isa();
   out.host = host_name();

@@ -21,6 +21,7 @@ class IntegratedTracer final : public Tracer {
     setting_ = {
         {metric}, scene.accuracy,        std::min(scene.max_lookback, kFar), objects_.get(), 0, rules_.sky, 0,
         kFar,     scene.records.max_hits};
+    setting_.earliest = observation_[0] - std::min(scene.max_lookback_t, kFar);
     const Matrix4<double> g = metric.g(observation_);
     for (std::size_t a = 0; a < 4; ++a) departure_.lowered[a] = g * tetrad_.e[a];
   }
@@ -131,7 +132,10 @@ class IntegratedTracer final : public Tracer {
 
   template <class Stepper>
   void launch(Stepper&, const BandRays& rays, std::size_t first, Flights& flights) const {
-    for (std::size_t i = 0; i < flights.count; ++i) flights.list[i] = static_cast<std::uint32_t>(first + i);
+    for (std::size_t i = 0; i < flights.count; ++i) {
+      flights.list[i] = static_cast<std::uint32_t>(first + i);
+      if (!rays.exists(first + i)) flights.status[i] = Status::outside;
+    }
     for (std::size_t i = 0; i < flights.count; i += Lanes<Wide>::count) {
       const Group<Wide> from(flights.list.get(), i, flights.count);
       Group<Wide> group = from;
@@ -185,13 +189,16 @@ class IntegratedTracer final : public Tracer {
     room.hits.keep(write_records(crossings, rules_, static_cast<std::uint32_t>(first), to,
                                  flights.status.get(), record_objects, record_sky));
     for (std::size_t i = 0; i < flights.count; ++i) {
+      RayRecord& record = room.rays[first + i];
+      record = {static_cast<std::uint32_t>(flights.status[i]), 0, 0, 0};
+      if (flights.status[i] == Status::outside) continue;
       const auto y = State<double>::map([&](std::size_t c) { return flights.y[c][i]; });
       const double drift = std::fabs(square_of_momentum(to_phase(y), to_phase(setting_.system.rate(y))));
       // What the steps estimated and what the drift betrays, together, follow the true error better than
       // either.
-      room.rays[first + i] = {
-          static_cast<std::uint32_t>(flights.status[i]), static_cast<std::uint32_t>(flights.steps[i]),
-          static_cast<float>(std::sqrt(flights.error[i] * drift)), static_cast<float>(drift)};
+      record.steps = static_cast<std::uint32_t>(flights.steps[i]);
+      record.error = static_cast<float>(std::sqrt(flights.error[i] * drift));
+      record.drift = static_cast<float>(drift);
     }
   }
 

@@ -50,9 +50,9 @@ Mask<S> comes_near(const MarchSetting<M>& setting, const Flight<S>& flight, cons
 
 /// Whether a ray has come as far as it shall. What rounding leaves is no step: no curve can be laid through
 /// it.
-template <class S>
-auto is_at_end(const S& lambda, double limit) {
-  return lambda >= S((1 - 4e-15) * limit);
+template <Metric M, class S>
+Mask<S> is_at_end(const MarchSetting<M>& setting, const S& lambda, const S& t) {
+  return (lambda >= S((1 - 4e-15) * setting.lookback)) | (t < S(setting.earliest));
 }
 
 /// One attempt of a step for every active lane.
@@ -80,7 +80,8 @@ void try_step(Stepper& stepper, const MarchSetting<M>& setting, Marching<S>& m) 
     m.turning.turns = select(moves, m.turning.at(spatial(to_phase(flight.y).x)), m.turning.turns);
   m.broken = m.broken | (stuck & !a.finite);
   m.given_up = m.given_up | stuck | (m.active & (flight.steps >= S(kStepLimit)) & !near);
-  m.active = m.active & !near & !m.given_up & (m.end == S(0.0)) & !is_at_end(flight.lambda, setting.lookback);
+  m.active =
+      m.active & !near & !m.given_up & (m.end == S(0.0)) & !is_at_end(setting, flight.lambda, flight.y[0]);
 }
 
 template <class S>
@@ -153,7 +154,7 @@ void settle(const MarchSetting<M>& setting, const Group<S>& group, const Look<S>
       end_ray(setting, flights, ray, Status::step_limit, 0);
     } else if (how != 0) {
       end_ray(setting, flights, ray, status_of(how), how);
-    } else if (is_at_end(flights.lambda[ray], setting.lookback)) {
+    } else if (is_at_end(setting, flights.lambda[ray], flights.y[0][ray])) {
       end_ray(setting, flights, ray, Status::lookback_reached, 0);
     } else {
       flights.list[flights.listed++] = static_cast<std::uint32_t>(ray);
@@ -178,8 +179,9 @@ Look<S> look_at(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>
 template <class S, class Stepper, Metric M>
 void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights, Trails* trails) {
   constexpr int kRound = 12;
-  for (std::size_t i = 0; i < flights.count; ++i) flights.list[i] = static_cast<std::uint32_t>(i);
-  flights.listed = flights.count;
+  flights.listed = 0;
+  for (std::size_t i = 0; i < flights.count; ++i)
+    if (flights.status[i] != Status::outside) flights.list[flights.listed++] = static_cast<std::uint32_t>(i);
   while (flights.listed > 0) {
     std::size_t left = 0;
     flights.waits = 0;

@@ -19,7 +19,9 @@
 //   conserved(x, k)                 named constants of motion of the geodesic with chart tangent k
 //   static_tetrad(x) -> Tetrad      orthonormal frame of the natural observer (else Gram-Schmidt)
 //   path(x, k) -> Path              closed-form geodesics: Path::at(lambda) -> PathPoint
-//   to_origin(P, x), from_origin(P, x), turn(P, x)   the isometry that carries P to the origin, and back
+//   bend_of_time()                  with it: no |d2t/dlambda2| of rays is greater, local frequency 1 at their
+//   start to_origin(P, x), from_origin(P, x), turn(P, x)   the isometry that carries P to the origin, and
+//   back
 #pragma once
 
 #include <concepts>
@@ -92,6 +94,7 @@ concept Metric = requires(const M m, Vec4<double> x) {
 template <class M>
 concept HasClosedPaths = requires(const M m, Vec4<double> x) {
   m.path(x, x).at(1.0);
+  { m.bend_of_time() } -> std::same_as<double>;
 };
 
 template <class M>

@@ -76,6 +76,7 @@ struct RecordRules {
   std::array<std::uint32_t, 2> sky{};     ///< numbers of the skies' objects, 0 for none
   std::unique_ptr<bool[]> transparent{};  ///< by the object's number, from 1
   Records records;
+  double lookback_t = kFar;
   bool onward = false;  ///< rays go on behind what they meet
 
   RecordRules() = default;
@@ -83,6 +84,7 @@ struct RecordRules {
       : objects(static_cast<std::uint32_t>(scene.objects.size())),
         transparent(new bool[objects + 1]()),
         records(scene.records),
+        lookback_t(scene.max_lookback_t),
         onward(scene.records.max_hits > 0) {
     for (std::uint32_t i = 0; i < objects; ++i) {
       const Object& object = scene.objects[i];
@@ -123,8 +125,8 @@ inline void move_record(const HitRoom& room, std::size_t from, std::size_t to) {
 }
 
 /// Of the records of one ray, sorted, keeps what the rules let through, from place `kept` on. A ray that
-/// comes to its end here has the status `hit`; one that the rules let go no further for its order, the status
-/// `lookback_reached`; and one whose numbers broke down, `not_finite`.
+/// comes to its end here has the status `hit`; one that the rules let go no further for its order or its
+/// time, the status `lookback_reached`; and one whose numbers broke down, `not_finite`.
 inline void keep_records(const RecordRules& rules, const HitRoom& room, std::size_t from, std::size_t end,
                          std::size_t& kept, Status& status) {
   const std::size_t first = kept;
@@ -135,7 +137,7 @@ inline void keep_records(const RecordRules& rules, const HitRoom& room, std::siz
       status = Status::not_finite;
       continue;
     }
-    if (hit.order > rules.records.max_order) {
+    if (hit.order > rules.records.max_order || hit.t < -rules.lookback_t) {
       if (status != Status::not_finite) status = Status::lookback_reached;
       return;
     }

@@ -19,7 +19,8 @@ struct MarchSetting {
   double reach;   ///< coordinates of every object lie within this distance of the origin …
   double inside;  ///< … and farther than this from it
   std::uint32_t max_hits =
-      0;  ///< crossings of a ray that ends it; 0: the first with an object that ends rays
+      0;                    ///< crossings of a ray that ends it; 0: the first with an object that ends rays
+  double earliest = -kFar;  ///< time at which rays end
 };
 
 /// How a ray that stands at y ends, as a number of the scalar; `none` if it goes on. A ray may not escape

@@ -32,6 +32,9 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
 /// Tells of objects that are not small against the curvature, and of lamps that objects shut in.
 void note_doubts(const Tracer& tracer, const Scene& scene, const std::string& place, const Note& note);
 
+/// The oldest version of the file format that holds what the scene asks for.
+int format_of(const Scene& scene);
+
 /// What a dataset of the whole picture says of itself before it is traced.
 Manifest describe(const Spacetime& spacetime, const Scene& scene, const Tracer& tracer);
 

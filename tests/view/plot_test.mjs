@@ -117,8 +117,8 @@ test("a drag turns the camera so that the scene goes with the pointer", () => {
 });
 
 test("the frame of a pixel looks where the camera does, and moves as the pixel does", () => {
-  for (const [type, fov_deg] of [["perspective", 70], ["panorama", [200, 90]]]) {
-    const camera = {azimuth_deg: 30, elevation_deg: 12, roll_deg: 5, fov_deg, resolution: [200, 100]};
+  for (const [type, fov_deg] of [["perspective", 70], ["panorama", [200, 90]], ["fisheye", 240], ["cube_map"], ["tetrahedron_map"]]) {
+    const camera = {azimuth_deg: 30, elevation_deg: 12, roll_deg: 5, fov_deg, resolution: [type === "cube_map" ? 600 : 200, 100]};
     const {look, right, down} = numbers.pixelFrame(type, camera, 150, 20);
     const later = numbers.pixelFrame(type, camera, 150.01, 20).look, below = numbers.pixelFrame(type, camera, 150, 20.01).look;
     for (let i = 0; i < 3; ++i) {
@@ -129,6 +129,22 @@ test("the frame of a pixel looks where the camera does, and moves as the pixel d
       near((below[i] - look[i]) / 0.01, down[i] - fall * look[i], 1e-5);
     }
   }
+});
+
+test("maps look where the tracer does", () => {
+  const level = {azimuth_deg: 0, elevation_deg: 0, roll_deg: 0}, look = (type, camera, x, y) => numbers.pixelFrame(type, {...level, ...camera}, x, y).look;
+  const same = (a, b) => a.forEach((x, i) => near(x, b[i], 1e-12));
+  const cube = {resolution: [66, 11]}, centres = [[0, -1, 0], [0, 1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0]];
+  centres.forEach((centre, face) => same(look("cube_map", cube, 11 * face + 5, 5), centre));
+  near(look("cube_map", cube, 27, 10)[0], 10 / Math.hypot(10, 11), 1e-12); // the lower edge of up is the front's
+  const dome = {resolution: [31, 21], fov_deg: 180};
+  same(look("fisheye", dome, 15, 10), [1, 0, 0]);
+  same(look("fisheye", dome, 15, 3), [Math.cos(Math.PI / 3), 0, Math.sin(Math.PI / 3)]);
+  const tetrahedron = {resolution: [6, 3]}; // forward lies a third of the way along the first triangle
+  same(look("tetrahedron_map", tetrahedron, 0.5, 1.5), [1, 0, 0]);
+  near(look("tetrahedron_map", tetrahedron, 2.5, -0.5)[0], -1, 1e-12);
+  const aimed = numbers.sceneNumbers({...scene, camera: {type: "cube_map", resolution: [6, 1], forward: [0, 3, 3], up: [1, 0, 0]}}).camera;
+  near(aimed.azimuth_deg, 90, 1e-9), near(aimed.elevation_deg, 45, 1e-9), near(aimed.roll_deg, 90, 1e-9);
 });
 
 test("drags are traced as finely as is fast enough, without flickering", () => {

@@ -1,6 +1,7 @@
 // The numbers of a scene that tracing may change, and how the camera looks at them. Pure functions.
 
-import {cameraAxes, cross, dot, scaled, sum, unit} from "./relativity.js";
+import {isMap, mapAngles, mapFrame} from "./map_cameras.js";
+import {cameraAngles, cameraAxes, cross, dot, scaled, sum, unit} from "./relativity.js";
 
 const kMetric = {goedel: {a: 1}}; // what a scene may leave out
 const kRadians = Math.PI / 180;
@@ -19,13 +20,20 @@ function objectNumbers({shape, placing}) {
   return out;
 }
 
+/** The angles of a camera, also of one that is given by directions. */
+function cameraOrientation({azimuth_deg = 0, elevation_deg = 0, roll_deg = 0, forward, up = [0, 0, 1]}) {
+  if (!forward) return {azimuth_deg, elevation_deg, roll_deg};
+  const ahead = unit(forward), left = unit(cross(unit(up), ahead));
+  return fromAngles(cameraAngles({forward: ahead, left, up: cross(ahead, left)}));
+}
+
 /** In the form of the changes that api/trace takes, with all that may be changed. @param {object} scene */
 export function sceneNumbers(scene) {
   const {name, ...given} = scene.metric;
   const metric = {...kMetric[name]};
   for (const [key, value] of Object.entries(given)) if (typeof value === "number") metric[key] = value;
   const {event, velocity = [0, 0, 0]} = scene.observer;
-  const {azimuth_deg = 0, elevation_deg = 0, roll_deg = 0, fov_deg, resolution} = scene.camera;
+  const {fov_deg, resolution} = scene.camera, {azimuth_deg, elevation_deg, roll_deg} = cameraOrientation(scene.camera);
   const objects = {};
   for (const object of scene.objects) {
     const numbers = objectNumbers(object);
@@ -55,6 +63,7 @@ export function tidy(degrees) {
 
 /** Radians a pixel of the picture, to the left and upwards, at its centre. */
 export function pixelAngles(type, {fov_deg, resolution: [width, height]}) {
+  if (isMap(type)) return mapAngles(type, {fov_deg, resolution: [width, height]});
   if (type === "sphere") return [2 * Math.PI / width, Math.PI / height];
   if (type === "panorama") return [fov_deg[0] * kRadians / width, fov_deg[1] * kRadians / height];
   const both = 2 * Math.tan(fov_deg * kRadians / 2) / width;
@@ -74,6 +83,11 @@ export function lookedRound(type, camera, dx, dy) {
 /** Unit look direction of a pixel, and the displacements at the distance 1 that move by one pixel right and down. */
 export function pixelFrame(type, camera, x, y) {
   const {forward, left, up} = cameraAxes(angles(camera)), [across, along] = pixelAngles(type, camera);
+  const inFrame = (v) => sum(scaled(forward, v[0]), sum(scaled(left, v[1]), scaled(up, v[2])));
+  if (isMap(type)) {
+    const {look, right, down} = mapFrame(type, camera, x, y);
+    return {look: inFrame(look), right: inFrame(right), down: inFrame(down)};
+  }
   const [width, height] = camera.resolution, h = (width / 2 - x - 0.5) * across, v = (height / 2 - y - 0.5) * along;
   if (type === "perspective") {
     const look = unit(sum(forward, sum(scaled(left, h), scaled(up, v))));
