@@ -81,7 +81,8 @@ class Kernel final : public Spacetime {
                                       ObserverFrame frame) const override {
     const M metric = make_metric<M>(values);
     if (accuracy || !HasClosedPaths<M>) {
-      const auto tangent = observer_tetrad(metric, Vec4<double>{event}, frame).to_chart(Vec4<double>{k});
+      const auto tangent =
+          NULLCONE_ISA::observer_tetrad(metric, Vec4<double>{event}, frame).to_chart(Vec4<double>{k});
       return NULLCONE_GEODESIC_INTEGRATED(values, event, tangent.c, lambda,
                                           accuracy ? *accuracy : Accuracy{});
     }

@@ -7,29 +7,31 @@
 NULLCONE_KERNEL_BEGIN
 
 /// A face of a primitive. Box: 2 axis + (1 on the positive side); cylinder: 0 side, 4 bottom, 5 top; else 0.
-struct Face {
+struct SolidFace {
   double distance = 0;  ///< from it, to first order; positive outside
   const Primitive* primitive = nullptr;
   std::size_t number = 0;
   bool reversed = false;  ///< its outside is inside
 
-  Face turned_over() const { return {-distance, primitive, number, !reversed}; }
+  SolidFace turned_over() const { return {-distance, primitive, number, !reversed}; }
 };
 
-inline Face face_near(const Primitive& primitive, const Vec3<double>& X) {
+inline SolidFace face_near(const Primitive& primitive, const Vec3<double>& X) {
   Vec3<double> Y;
   for (std::size_t i = 0; i < 3; ++i)
     Y[i] = dot(convert<double>(primitive.axes[i]), X - convert<double>(primitive.centre)) / primitive.half[i];
   const double rho = sqrt(Y[0] * Y[0] + Y[1] * Y[1]);
-  const auto slab = [&](std::size_t i) -> Face {
+  const auto slab = [&](std::size_t i) -> SolidFace {
     return {primitive.half[i] * (abs(Y[i]) - 1), &primitive, 2 * i + (Y[i] < 0 ? 0 : 1)};
   };
-  const auto outermost = [](const Face& a, const Face& b) { return a.distance < b.distance ? b : a; };
+  const auto outermost = [](const SolidFace& a, const SolidFace& b) {
+    return a.distance < b.distance ? b : a;
+  };
   switch (primitive.type) {
     case PrimitiveType::box:
       return outermost(slab(2), outermost(slab(0), slab(1)));
     case PrimitiveType::cylinder:
-      return outermost(Face{primitive.half[0] * (rho - 1), &primitive}, slab(2));
+      return outermost(SolidFace{primitive.half[0] * (rho - 1), &primitive}, slab(2));
     case PrimitiveType::ellipsoid: {
       Vec3<double> slope{};
       for (std::size_t i = 0; i < 3; ++i) slope[i] = 2 * Y[i] / primitive.half[i];
@@ -41,17 +43,17 @@ inline Face face_near(const Primitive& primitive, const Vec3<double>& X) {
 }
 
 /// The face that decides whether X is inside.
-inline Face face_near(const Primitive* primitives, const SolidStep* steps, std::size_t count,
-                      const Vec3<double>& X) {
-  std::array<Face, Solid::kMostDepth> stack;
+inline SolidFace face_near(const Primitive* primitives, const SolidStep* steps, std::size_t count,
+                           const Vec3<double>& X) {
+  std::array<SolidFace, Solid::kMostDepth> stack;
   std::size_t top = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (steps[i].join == Join::take) {
       stack[top++] = face_near(primitives[steps[i].primitive], X);
       continue;
     }
-    const Face upper = stack[--top], a = stack[--top];
-    const Face b = steps[i].join == Join::subtract ? upper.turned_over() : upper;
+    const SolidFace upper = stack[--top], a = stack[--top];
+    const SolidFace b = steps[i].join == Join::subtract ? upper.turned_over() : upper;
     const bool nearest = steps[i].join == Join::unite;
     stack[top++] = (a.distance < b.distance) == nearest ? a : b;
   }
@@ -74,7 +76,7 @@ inline void lay_out_box(std::size_t axis, double side, FacetNumbers& out) {
 /// Of a cylinder: v runs from the middle of the bottom (0) over its edge (1/3) up the side and over the edge
 /// of the top (2/3) to its middle (1). Of a tube: from 0 up to 1. Of a disk or ring: from its inner edge (0,
 /// or its middle) to the outer edge (1). u is always the longitude.
-inline void lay_out_round(const Face& face, FacetNumbers& out) {
+inline void lay_out_round(const SolidFace& face, FacetNumbers& out) {
   const bool tube = face.primitive->type == PrimitiveType::tube;
   if (face.primitive->type == PrimitiveType::disk) {
     const double hole = face.primitive->hole;
@@ -87,7 +89,7 @@ inline void lay_out_round(const Face& face, FacetNumbers& out) {
   }
 }
 
-inline FacetNumbers numbers_of(const Face& face) {
+inline FacetNumbers numbers_of(const SolidFace& face) {
   const Primitive& primitive = *face.primitive;
   FacetNumbers out;
   out.centre = primitive.centre;
