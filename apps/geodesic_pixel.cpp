@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/geodesic_inquiry.h"
+#include "apps/geodesic_outline.h"
 #include "apps/scene_file.h"
 #include "core/base/boost.h"
 #include "core/base/error.h"
@@ -59,9 +60,7 @@ double well_outside(const Scene& scene) {
   for (const Object& object : scene.objects) {
     if (object.shape.type == ShapeType::sky) continue;
     const Event& p = object.placing.worldline.event;
-    const double size = object.shape.type == ShapeType::sphere
-                            ? object.shape.radius
-                            : length(object.shape.edges[0], object.shape.edges[1], object.shape.edges[2]);
+    const double size = ball_of(object.shape);
     farthest = std::max(
         {farthest, length(p[1], p[2], p[3]) + size, length(p[1] - o[1], p[2] - o[2], p[3] - o[3]) + size});
   }
