@@ -31,16 +31,16 @@ std::vector<World> worlds() {
                     falling = local("geodesic", "[0, -0.4, 0.5, 0.1]", R"(, "velocity": [0.2, 0.1, -0.2])");
   const std::string here = R"("observer": {"event": [0.5, 0.1, -0.2, 0.1]}, )";
   return {
-      {"minkowski", R"("observer": {"event": [1, -1, -2, 0.4], "velocity": [0.1, 0.3, 0]}, )" + around + full,
-       fast},
-      {"minkowski", R"("observer": {"event": [1, -1, -2, 0.4]}, "paths": "integrated", )" + around + full,
+      {"minkowski",
+       R"("observer": {"event": [1, 0.1, 0.2, 0.1], "velocity": [0.1, 0.3, 0]}, )" + around + full, fast},
+      {"minkowski", R"("observer": {"event": [1, 0.1, 0.2, 0.1]}, "paths": "integrated", )" + around + full,
        fast},
       {"goedel", here + R"("max_lookback": 9, )" + around + full, local("static", "[0, 0.9, 0.1, 0]", "")},
       {"goedel", here + R"("max_lookback": 9, )" + around + full, falling},
       {"goedel", here + R"("paths": "integrated", "max_lookback": 9, )" + around + full,
        local("static", "[0, 0.9, 0.1, 0]", "")},
       {"kerr_schild", R"("observer": {"event": [0, 12, 0, 2]}, )" + ahead + full,
-       R"("placing": {"type": "local", "worldline": {"type": "static", "event": [0, -3, 4, 1]}, "z_axis": [0.4, -0.3, 1]})"},
+       R"("placing": {"type": "local", "worldline": {"type": "static", "event": [0, 5, 2, 1]}, "z_axis": [0.4, -0.3, 1]})"},
       {"ellis_wormhole", R"("observer": {"event": [0, 6, 0, 1]}, )" + ahead + full,
        R"("placing": {"type": "coordinate", "centre": [1, 1, 0.5], "z_axis": [0.4, -0.3, 1]})"}};
 }

@@ -100,7 +100,7 @@ void integrate(const System& system, State& state, double tau, const std::string
   using namespace boost::numeric::odeint;
   if (tau == 0) return;
   constexpr double kRelative = 1e-13, kAbsolute = 1e-15;
-  constexpr int kMostSteps = 200'000;
+  constexpr int kMostSteps = 20'000;
   int steps = 0;
   const auto count = [&](const State&, double) {
     if (++steps > kMostSteps)
