@@ -150,6 +150,7 @@ tinygltf::Model load(MeshFile& file) {
   } catch (const std::exception& failure) {
     error = failure.what();
   }
+  error.erase(error.find_last_not_of(" \n") + 1);
   if (!whole || !error.empty()) file.refuse("is not a glTF 2.0 file: " + printable(error));
   return model;
 }

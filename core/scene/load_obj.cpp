@@ -70,8 +70,7 @@ class ObjLines final : public std::streambuf {
     const std::size_t word = line_.find_first_of(" \t", first);
     const std::string_view name = std::string_view(line_).substr(first, word - first);
     if (name == "f") {
-      if (word != std::string::npos && line_.find_first_not_of("0123456789-/ \t", word) != std::string::npos)
-        refuse("expected numbers of corners, as in f 1/1/1 2/2/2 3/3/3");
+      check_face(word);
       return true;
     }
     const std::size_t least = name == "v" || name == "vn" ? 3 : name == "vt" ? 1 : 0;
@@ -80,6 +79,16 @@ class ObjLines final : public std::streambuf {
       refuse("expected " + std::to_string(least) + (least == 1 ? " number" : " numbers") + " after " +
              std::string(name));
     return true;
+  }
+  /// Numbers of nine digits at most: the loader's own overflow.
+  void check_face(std::size_t from) const {
+    std::size_t digits = 0;
+    for (std::size_t i = from; i < line_.size(); ++i) {
+      const char c = line_[i];
+      digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+      if (digits > 9 || (digits == 0 && std::strchr("-/ \t", c) == nullptr))
+        refuse("expected numbers of corners, as in f 1/1/1 2/2/2 3/3/3");
+    }
   }
   /// How many numbers there are from a place on, and nothing else: the loader would take it for zeros.
   std::size_t count_numbers(std::size_t from) const {

@@ -21,7 +21,7 @@ struct MeshNormals {
 
 /// Four boxes side by side, in the tree's frame, in which the whole mesh lies within [-1, 1]; and what is in
 /// them: the number of a node, or some triangles.
-struct alignas(16) MeshNode {
+struct alignas(64) MeshNode {
   static constexpr std::uint32_t kLeaf = 0x80000000, kMostInLeaf = 4;
 
   float low[3][4], high[3][4];  ///< low > high: no box

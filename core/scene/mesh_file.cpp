@@ -16,10 +16,10 @@ namespace nullcone {
 MeshFile::MeshFile(const std::string& path) : path_(path) {
   const int file =
       ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // no waiting for writers of pipes
-  if (file < 0) refuse(std::string("cannot open the mesh: ") + std::strerror(errno));
+  if (file < 0) refuse(std::string("cannot open the file: ") + std::strerror(errno));
   file_.reset(::fdopen(file, "rb"));
   struct stat found {};
-  if (!file_ || ::fstat(file, &found) != 0) refuse("cannot open the mesh");
+  if (!file_ || ::fstat(file, &found) != 0) refuse("cannot open the file");
   if (S_ISDIR(found.st_mode)) refuse("is a folder; expected a mesh");
   if (!S_ISREG(found.st_mode)) refuse("is not a plain file; expected a mesh");
   if (found.st_size == 0) refuse("is empty; expected a mesh");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/base/error.h"
 #include "core/scene/load_mesh.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/read_placing.h"
@@ -38,8 +39,8 @@ std::shared_ptr<const Mesh> read_mesh(JsonObject& shape, const std::string& scen
     shape.refuse("normals", "expected \"flat\", or nothing: the file has no normals");
   if (normals == "flat") soup.normals.clear();
   auto out = std::make_shared<const Mesh>(make_mesh(std::move(soup)));
-  if (out->triangles.empty()) shape.refuse("file", "has no triangle with an area");
-  if (!(out->ball >= 1e-100)) shape.refuse("file", "is smaller than 1e-100");
+  if (out->triangles.empty()) throw InputError(path, "has no triangle with an area");
+  if (!(out->ball >= 1e-100)) throw InputError(path, "holds a mesh smaller than 1e-100");
   return out;
 }
 

@@ -129,7 +129,7 @@ inline bool winds_around(const MeshView& mesh, const Vec3<double>& X) {
     const Shear shear(line.foot, W);
     winding = 0, clear = true;
     line.look(0, kFar, 0);
-    line.walk(mesh.nodes, [&](const LeafRange& leaf) {
+    line.walk(mesh, [&](const LeafRange& leaf) {
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const Shear::Areas areas = shear.areas(mesh.triangles[i]);
         if (!areas.crossed()) continue;

@@ -83,7 +83,7 @@ class MeshLine {
 
   /// leaf(triangles) for those whose boxes the line meets, until one returns true.
   template <class Leaf>
-  void walk(const MeshNode* nodes, Leaf&& leaf) const {
+  void walk(const MeshView& mesh, Leaf&& leaf) const {
     if (misses_) return;
     struct Waiting {
       std::uint32_t child;
@@ -99,7 +99,7 @@ class MeshLine {
         if (leaf(LeafRange(next.child))) return;
         continue;
       }
-      const MeshNode& node = nodes[next.child];
+      const MeshNode& node = mesh.nodes[next.child];
       Four enters, leaves;
       meet(node, enters, leaves);
       const std::size_t base = top;
@@ -108,6 +108,7 @@ class MeshLine {
         std::size_t k = top++;  // the nearest comes to the top
         for (; k > base && stack[k - 1].near < enters[i]; --k) stack[k] = stack[k - 1];
         stack[k] = {node.child[i], enters[i]};
+        fetch(mesh, node.child[i]);
       }
     }
   }
@@ -120,6 +121,16 @@ class MeshLine {
     Four out;
     __builtin_memcpy(&out, from, sizeof out);
     return out;
+  }
+  /// A large mesh does not fit into caches: what waits is on its way meanwhile.
+  static void fetch(const MeshView& mesh, std::uint32_t child) {
+    const bool leaf = (child & MeshNode::kLeaf) != 0;
+    const void* const from = leaf ? static_cast<const void*>(mesh.triangles + LeafRange(child).first)
+                                  : static_cast<const void*>(mesh.nodes + child);
+    const char* const bytes = static_cast<const char*>(from);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + 64);
+    if (leaf) __builtin_prefetch(bytes + 128);
   }
   static Four all(float x) { return Four{x, x, x, x}; }
 

@@ -93,7 +93,7 @@ struct MeshShape {
     const Shear shear(line.foot, ray.W);
     double first = kFar;
     line.look(0, ray.until, ray.rounding);
-    line.walk(mesh.nodes, [&](const LeafRange& leaf) {
+    line.walk(mesh, [&](const LeafRange& leaf) {
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const MeshTriangle& triangle = mesh.triangles[i];
         if (!shear.areas(triangle).crossed()) continue;
@@ -119,7 +119,7 @@ struct MeshShape {
     ray.until = min(valid, sqrt((0.0625 * mesh.half + 0.25 * off) / ray.bend));
     MeshLine line(mesh, ray.X, ray.W);
     line.look(0, ray.until, ray.thickness());
-    line.walk(mesh.nodes, [&](const LeafRange& leaf) {
+    line.walk(mesh, [&](const LeafRange& leaf) {
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const double least = not_before(mesh.triangles[i], ray);
         if (least >= ray.until) continue;
@@ -139,7 +139,7 @@ struct MeshShape {
     double out = 8 * ray.rounding * over_speed;
     ray.bend = 0, ray.until = 1;
     line.look(0, 0, 16 * ray.rounding);
-    line.walk(mesh.nodes, [&](const LeafRange& leaf) {
+    line.walk(mesh, [&](const LeafRange& leaf) {
       for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const MeshTriangle& triangle = mesh.triangles[i];
         const TrianglePlane plane(triangle, ray.X, ray.W);
