@@ -7,6 +7,8 @@
 
 #include "core/scene/mesh_tree.h"
 #include "core/trace/any_shape.h"
+#include "core/trace/placing.h"
+#include "metrics/minkowski_kernel.h"
 #include "tests/random_rays.h"
 
 namespace nullcone::test {
@@ -61,6 +63,14 @@ TriangleSoup sphere_soup(int n, bool smooth, const Radius& radius) {
           }
       }
   return out;
+}
+
+inline double round_as(const host::Vec3<double>&) { return 1; }
+
+/// Of an object at rest there, whose bounding ball is a little larger than it need be.
+inline host::RestPlacing<host::Minkowski> at_origin(double ball) {
+  using host::Vec3;
+  return {{}, {{0, 0, 0, 0}}, true, {Vec3<double>{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, 1.001 * ball};
 }
 
 inline void move_and_scale(TriangleSoup& soup, const host::Vec3<double>& by, double scale) {

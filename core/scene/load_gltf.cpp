@@ -3,12 +3,12 @@
 #include <tiny_gltf.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/scene/gltf_chunks.h"
 #include "core/scene/gltf_numbers.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/read_placing.h"
@@ -53,78 +53,13 @@ tinygltf::FsCallbacks reading(Beside& beside) {
   return out;
 }
 
-std::uint32_t little(const std::string& bytes, std::size_t at) {
-  std::uint32_t out;
-  std::memcpy(&out, bytes.data() + at, 4);
-  return out;
-}
-
-/// The JSON of a file, and its own buffer (.glb).
-struct Chunks {
-  std::string json;
-  std::string_view binary;
-};
-
-Chunks chunks_of(const std::string& bytes, const MeshFile& file) {
-  if (!bytes.starts_with("glTF")) return {bytes, {}};
-  const std::uint64_t size = bytes.size();
-  if (size < 20 || little(bytes, 4) != 2 || little(bytes, 16) != 0x4E4F534A ||
-      20 + std::uint64_t{little(bytes, 12)} > size)
-    file.refuse("is not a whole glTF 2.0 file");
-  const std::uint64_t json = little(bytes, 12), next = 20 + (json + 3) / 4 * 4;
-  Chunks out{bytes.substr(20, json), {}};
-  if (next + 8 > size) return out;
-  const std::uint64_t length = little(bytes, next);
-  if (little(bytes, next + 4) != 0x004E4942 || next + 8 + length > size)
-    file.refuse("is not a whole glTF 2.0 file: its second chunk is cut off, or no buffer");
-  out.binary = std::string_view(bytes).substr(next + 8, length);
-  return out;
-}
-
-/// A .glb again, as short as can be.
-std::string joined(std::string json, std::string_view binary) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const std::size_t padded = (binary.size() + 3) / 4 * 4;
-  std::string out = "glTF";
-  const auto add = [&](std::size_t number) {
-    const auto word = static_cast<std::uint32_t>(number);
-    out.append(reinterpret_cast<const char*>(&word), 4);
-  };
-  add(2), add(20 + json.size() + 8 + padded), add(json.size()), add(0x4E4F534A);
-  out += json;
-  add(padded), add(0x004E4942);
-  out += binary;
-  out.resize(out.size() + padded - binary.size());
-  return out;
-}
-
-/// Takes away what is not looked at, and refuses what would only fill memory.
-void prune(nlohmann::json& document, const MeshFile& file) {
-  for (const char* key : {"images", "textures", "samplers", "materials", "animations", "skins", "cameras",
-                          "extensions", "extras"})
-    document.erase(key);
-  if (document.contains("extensionsRequired"))
-    for (const auto& name : document["extensionsRequired"])
-      if (const std::string text = name.is_string() ? name.get<std::string>() : "";
-          !text.starts_with("KHR_materials_") && text != "KHR_texture_transform")
-        file.refuse("needs the extension '" + printable(text) + "', which is not read");
-  double bytes = 0;
-  if (document.contains("buffers") && document["buffers"].is_array()) {
-    if (document["buffers"].size() > 1000) file.refuse("has more than 1000 buffers");
-    for (const auto& buffer : document["buffers"])
-      if (buffer.is_object() && buffer.contains("byteLength") && buffer["byteLength"].is_number())
-        bytes += buffer["byteLength"].get<double>();
-  }
-  if (!(bytes <= static_cast<double>(MeshFile::kLargest))) file.refuse("has more than 1 GiB of buffers");
-}
-
 tinygltf::Model load(MeshFile& file) {
   const std::string bytes = file.read_all();
-  const Chunks chunks = chunks_of(bytes, file);
+  const GltfChunks chunks = chunks_of(bytes, file);
   if (chunks.json.size() > std::size_t{1} << 26) file.refuse("has more than 64 MiB of JSON");
   nlohmann::json document = parse_json(chunks.json, file.path());
   if (!document.is_object()) file.refuse("expected an object {…}, the JSON of a glTF 2.0 file");
-  prune(document, file);
+  prune_gltf(document, file);
   Beside beside{file.path()};
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(reading(beside));
@@ -140,7 +75,7 @@ tinygltf::Model load(MeshFile& file) {
       whole = loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
                                          static_cast<unsigned>(text.size()), "@");
     } else {
-      const std::string whole_file = joined(document.dump(), chunks.binary);
+      const std::string whole_file = joined_glb(document.dump(), chunks.binary);
       whole = loader.LoadBinaryFromMemory(&model, &error, &warning,
                                           reinterpret_cast<const unsigned char*>(whole_file.data()),
                                           static_cast<unsigned>(whole_file.size()), "@");

@@ -15,6 +15,17 @@ struct MeshFace {
   double distance = kFar;  ///< of the point that is asked for
 };
 
+/// At most the distance of a box from a point in the tree's frame; endless for none.
+inline float distance_of(const MeshNode& node, std::size_t box, const float* at) {
+  float square = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float below = node.low[a][box] - at[a], above = at[a] - node.high[a][box];
+    const float off = below > above ? below : above;
+    square += off > 0 ? off * off : 0;
+  }
+  return __builtin_sqrtf(square) * (1 - 1e-6F);
+}
+
 /// The triangle nearest to X; all lengths in the mesh's units.
 inline MeshFace face_near(const MeshView& mesh, const Vec3<double>& X) {
   struct Waiting {
@@ -27,7 +38,7 @@ inline MeshFace face_near(const MeshView& mesh, const Vec3<double>& X) {
   for (std::size_t i = 0; i < 3; ++i) at[i] = static_cast<float>((X[i] - mesh.centre[i]) / mesh.half);
   MeshFace out;
   double least = kFar;
-  float reach = 1e30F;  // of what may be nearer, in the tree's frame
+  float reach = 1e29F;  // of what may be nearer, in the tree's frame: less than of no box
   stack[top++] = {0, 0};
   while (top > 0) {
     const Waiting next = stack[--top];
@@ -46,14 +57,7 @@ inline MeshFace face_near(const MeshView& mesh, const Vec3<double>& X) {
     const MeshNode& node = mesh.nodes[next.child];
     const std::size_t base = top;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (node.low[0][i] > node.high[0][i]) continue;
-      float square = 0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const float below = node.low[a][i] - at[a], above = at[a] - node.high[a][i];
-        const float off = below > above ? below : above;
-        square += off > 0 ? off * off : 0;
-      }
-      const float distance = __builtin_sqrtf(square) * (1 - 1e-6F);
+      const float distance = distance_of(node, i, at);
       if (distance > reach) continue;
       std::size_t k = top++;  // the nearest comes to the top
       for (; k > base && stack[k - 1].distance < distance; --k) stack[k] = stack[k - 1];
