@@ -107,6 +107,7 @@ std::vector<PlanePoint> circle(double radius) {
 
 double ball_of(const Shape& shape) {
   if (shape.type == ShapeType::solid) return shape.solid->ball;
+  if (shape.type == ShapeType::mesh) return shape.mesh->ball;
   if (shape.type == ShapeType::sphere) return shape.radius;
   return 0.5 * std::hypot(shape.edges[0], shape.edges[1], shape.edges[2]);
 }
@@ -122,9 +123,9 @@ std::vector<Stroke> object_outlines(const Inquiry& inquiry, double time) {
     for (const HitRecord& hit : traced.hits)
       if (hit.id == i + 1) tau = hit.tau + traced.tau_origins[i];
     const Projection A = projection(inquiry, object, time, tau);
-    const ShapeType type = object.shape.type;  // of solids, the ball that holds them
-    const bool open = type == ShapeType::quad || type == ShapeType::solid || object.shape.dome;
+    const ShapeType type = object.shape.type;  // of solids and meshes, the ball that holds them
     const bool edged = type == ShapeType::quad || type == ShapeType::box;
+    const bool open = type == ShapeType::quad || object.shape.dome || object.shape.solid || object.shape.mesh;
     out.push_back({open ? Stroke::Kind::outline : Stroke::Kind::filled, kColors[i % kColors.size()],
                    object.name, edged ? box_outline(A, object) : sphere_outline(A, ball_of(object.shape))});
   }

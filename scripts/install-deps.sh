@@ -14,6 +14,7 @@ packages=(
   libopenexr-dev libimath-dev   # datasets
   libopenimageio-dev    # textures and pictures
   liblcms2-dev          # ICC profiles in pictures
+  libtinyobjloader-dev libtinygltf-dev   # meshes: Wavefront OBJ, glTF
   libmurmurhash-dev     # names in Cryptomatte layers
   libturbojpeg0-dev libwebp-dev libpng-dev   # pictures that the viewer sends
   nlohmann-json3-dev libcli11-dev libssl-dev   # JSON, command lines, SHA-256

@@ -41,10 +41,11 @@ const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDe
   return *found;
 }
 
-Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken) {
+Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken,
+                   const std::string& place) {
   Object out;
   out.name = object.name("name", taken);
-  out.shape = read_shape(object.object("shape"), metric);
+  out.shape = read_shape(object.object("shape"), metric, place);
   if (out.shape.type != ShapeType::sky) out.placing = read_placing(object.object("placing"));
   out.opacity = object.number_or("opacity", 1, 0, 1);
   out.transparent = object.boolean("transparent", out.opacity < 1);
@@ -116,7 +117,7 @@ Scene read_scene(const std::string& text, const std::string& place,
   std::array<bool, 3> sky{};
   for (JsonObject& object : root.objects("objects")) {
     if (scene.objects.size() == 1000) root.refuse("objects", "expected at most 1000 objects");
-    scene.objects.push_back(read_object(object, metric, names));
+    scene.objects.push_back(read_object(object, metric, names, place));
     if (scene.objects.back().shape.type != ShapeType::sky) continue;
     if (std::exchange(sky[scene.objects.back().shape.sky], true))
       object.refuse("shape/type", "is a second sky; expected one at most");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/scene/read_mesh.h"
 #include "core/scene/read_placing.h"
 #include "core/scene/read_solid.h"
 
@@ -26,10 +27,10 @@ void read_edges(JsonObject& shape, std::size_t count, Shape& out) {
 
 }  // namespace
 
-Shape read_shape(JsonObject shape, const MetricDescription& metric) {
+Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::string& scene) {
   Shape out;
   const std::string type = shape.word("type", {"sphere", "ellipsoid", "box", "cylinder", "disk", "ring",
-                                               "quad", "union", "intersection", "difference", "sky"});
+                                               "quad", "union", "intersection", "difference", "mesh", "sky"});
   if (type == "sky") {
     read_sky(shape, metric, out);
   } else if (type == "quad") {
@@ -40,11 +41,14 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric) {
       out.radius = read_radius(shape);
     } else if (type == "box" && !out.dome) {
       read_edges(shape, 3, out);
+    } else if (type == "mesh") {
+      out.type = ShapeType::mesh;
+      out.mesh = read_mesh(shape, scene);
     } else {
       out.type = ShapeType::solid;
       out.solid = read_solid(shape, type);
-      if (out.dome && !out.solid->closed()) shape.refuse("dome", "expected a closed shape");
     }
+    if (out.dome && out.is_open()) shape.refuse("dome", "expected a closed shape");
   }
   shape.finish();
   return out;

@@ -1,4 +1,5 @@
-// An object's shape: spheres, boxes, quads, the sky; other bodies, and what set operations make of them.
+// An object's shape: spheres, boxes, quads, the sky; other bodies, and what set operations make of them;
+// meshes.
 #pragma once
 
 #include "core/base/json.h"
@@ -6,7 +7,7 @@
 
 namespace nullcone {
 
-/// An object's `shape`.
-Shape read_shape(JsonObject shape, const MetricDescription& metric);
+/// An object's `shape`; `scene` names the scene's file, beside which meshes are looked for.
+Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::string& scene);
 
 }  // namespace nullcone

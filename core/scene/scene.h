@@ -11,6 +11,7 @@
 
 #include "core/base/camera.h"
 #include "core/base/channels.h"
+#include "core/scene/mesh.h"
 #include "core/scene/solid.h"
 
 namespace nullcone {
@@ -65,17 +66,23 @@ struct Accuracy {
 /// What scenes may name; set by the study in docs/accuracy.md.
 inline constexpr Accuracy kDraft{1e-4, 0, Integrator::verner65}, kBalanced{}, kReference{1e-12};
 
-enum class ShapeType { sphere, quad, box, solid, sky };
+enum class ShapeType { sphere, quad, box, solid, mesh, sky };
 
 /// Shapes in their own frame: a sphere or a box about the origin; a quad in the xy plane, centred, normal +z;
 /// the sky at infinity, by direction.
 struct Shape {
   ShapeType type = ShapeType::sphere;
   double radius = 0;                        ///< sphere
-  bool dome = false;                        ///< sphere or solid: seen from inside
+  bool dome = false;                        ///< sphere, solid or mesh: seen from inside
   std::array<double, 3> edges = {0, 0, 0};  ///< box: lengths along x, y and z; quad: along x and y
   std::shared_ptr<const Solid> solid;       ///< any other body, and what is made of several
-  unsigned sky = 1;                         ///< sky: of which infinity, from 1
+  std::shared_ptr<const Mesh> mesh;
+  unsigned sky = 1;  ///< sky: of which infinity, from 1
+
+  /// Whether it has no inside.
+  bool is_open() const {
+    return type == ShapeType::quad || (solid && !solid->closed()) || (mesh && !mesh->closed);
+  }
 };
 
 enum class PlacingType {

@@ -1,6 +1,7 @@
 // Every shape but the sphere, in one type: which one it is, is asked once a step of a whole pack.
 #pragma once
 
+#include "core/trace/mesh_shape.h"
 #include "core/trace/shapes.h"
 #include "core/trace/solid_shape.h"
 
@@ -24,12 +25,13 @@ class AnyShape {
     as_primitive_.type = PrimitiveType::box;
     as_primitive_.half = {box.half_x, box.half_y, box.half_z};
   }
-  explicit AnyShape(const SolidShape& solid) : is_box_(false), solid_(solid) {}
+  explicit AnyShape(const SolidShape& solid) : type_(Type::solid), solid_(solid) {}
+  explicit AnyShape(const MeshShape& mesh) : type_(Type::mesh), mesh_(mesh) {}
 
   /// f(shape), in its own type.
   template <class F>
   decltype(auto) with(F&& f) const {
-    return is_box_ ? f(box_) : f(solid_);
+    return type_ == Type::box ? f(box_) : type_ == Type::solid ? f(solid_) : f(mesh_);
   }
 
   double bounding_radius() const {
@@ -38,8 +40,10 @@ class AnyShape {
   bool starts_inside() const {
     return with([](const auto& shape) { return shape.starts_inside(); });
   }
-  /// Whether it has no inside.
-  bool is_sheet() const { return is_box_ ? box_.flat() : !solid_.closed(); }
+  /// Whether a search does not care on which side of it a ray is: it has no inside, or is a mesh.
+  bool is_sheet() const {
+    return type_ == Type::box ? box_.flat() : type_ == Type::solid ? !solid_.closed() : true;
+  }
   template <class S>
   Vec3<S> outward(const Vec3<S>& X) const {
     return facet(X).normal(X);
@@ -64,21 +68,32 @@ class AnyShape {
     return with([&](const auto& shape) { return shape.skip(ray, rounding); });
   }
 
+  /// Whether its normal in the record is another than that of its surface.
+  bool is_smooth() const { return type_ == Type::mesh && mesh_.is_smooth(); }
+  /// A surface with that normal near X.
+  template <class S>
+  Facet<S> shading(const Vec3<S>& X) const {
+    return Facet<S>::near(X, [&](const Vec3<double>& at) { return mesh_.shading_near(at); });
+  }
+
   /// The surface near X, for the record.
   template <class S>
   Facet<S> facet(const Vec3<S>& X) const {
     return Facet<S>::near(X, [&](const Vec3<double>& at) {
-      if (!is_box_) return solid_.numbers_near(at);
+      if (type_ == Type::mesh) return mesh_.numbers_near(at);
+      if (type_ == Type::solid) return solid_.numbers_near(at);
       return box_.flat() ? numbers_of_quad(box_.half_x, box_.half_y)
                          : numbers_of(face_near(as_primitive_, at));
     });
   }
 
  private:
-  bool is_box_ = true;
+  enum class Type { box, solid, mesh };
+  Type type_ = Type::box;
   Box box_{1, 1, 1};
   Primitive as_primitive_;
   SolidShape solid_{};
+  MeshShape mesh_{};
 };
 
 /// The surface of a shape near a point of it: what has a value, a normal and texture coordinates.

@@ -37,6 +37,15 @@ std::array<Vec3<S>, 2> across(const Vec3<S>& n) {
           Vec3<S>{{b, side + n[1] * n[1] * a, zero - n[1]}}};
 }
 
+/// The normal of a crossing in the object's frame, outwards.
+template <class S, class Shape>
+Vec3<S> normal_of(const Crossed<S>& c, const Shape& shape) {
+  const Vec3<S> normal = surface_near(shape, c.here.X).normal(c.here.X);
+  if constexpr (requires { shape.is_smooth(); })
+    if (shape.is_smooth()) return normalised(shape.shading(c.here.X).normal(c.here.X) + c.lean * normal);
+  return normal;
+}
+
 /// N and K. The object's frame vectors are d event/dX_i; where they are orthonormal in the surface's rest
 /// frame (flat spacetime, the Goedel universe, small objects elsewhere), K is the photon's direction along
 /// them. Where they are stretched, N stays the shape's own normal, K.N is the true cosine mu, and the part
@@ -45,7 +54,7 @@ std::array<Vec3<S>, 2> across(const Vec3<S>& n) {
 template <class S, class Body, class Shape>
 void find_directions(const Crossed<S>& c, const Body& body, const Shape& shape, Detailed<S>& out) {
   using D = Dual<S, 2>;
-  const Vec3<S> normal = surface_near(shape, c.here.X).normal(c.here.X);
+  const Vec3<S> normal = normal_of(c, shape);
   const auto [a, b] = across(normal);
   const auto X = Vec3<D>::map([&](std::size_t i) { return D(c.here.X[i], Vec<S, 2>{{a[i], b[i]}}); });
   const Vec4<D> event = body.event(D(c.here.tau), X);

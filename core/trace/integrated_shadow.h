@@ -46,7 +46,7 @@ ShadowTrail<S> shadow_trail(const MarchObject<M>& object, const Phase<S>& at, co
       out.alongside.side = S(-1.0);
       out.is_free = outwards | (sheet > S(0.0));
     } else {
-      const auto inside = shape.holds(here.X);
+      const Mask<S> inside = shape.is_sheet() ? sheet < S(0.0) : shape.holds(here.X);
       out.alongside.side = select(inside, S(-1.0), S(1.0));
       out.is_free = inside & !inside;
     }

@@ -53,8 +53,7 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
     return "is too large: parts of it would have to move faster than light";
   const double tau = local_time(body, observer, body.first_guess(observer));
   if (!shape.hides(body.local(observer, tau).second)) return nullptr;
-  const bool open = described.type == ShapeType::solid && !described.solid->closed();
-  if (open || described.type == ShapeType::quad) return "holds the observer in its surface";
+  if (described.is_open()) return "holds the observer in its surface";
   return described.dome ? "is a dome, but the observer stands outside it"
                         : "holds the observer; what is seen from inside needs \"dome\": true";
 }
@@ -90,6 +89,7 @@ LocalBody<M> local_body(const M& metric, const Vec4<double>& start, const Placin
 template <class F>
 decltype(auto) with_shape(const Shape& shape, F&& f) {
   if (shape.type == ShapeType::sphere) return f(Sphere{shape.radius, shape.dome});
+  if (shape.type == ShapeType::mesh) return f(AnyShape(MeshShape{view_of(*shape.mesh), shape.dome}));
   if (shape.type != ShapeType::solid)
     return f(AnyShape(Box{0.5 * shape.edges[0], 0.5 * shape.edges[1], 0.5 * shape.edges[2]}));
   const Solid& solid = *shape.solid;

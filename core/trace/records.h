@@ -27,11 +27,24 @@ struct Crossed {
   Matrix4<S> g;
   Vec4<S> u;        ///< the surface's 4-velocity
   S frequency;      ///< that it emits
-  Vec4<S> slope;    ///< change of the shape's function along the vectors of the static tetrad
+  Vec4<S> slope;    ///< gradient whose direction is the normal, along the vectors of the static tetrad
   S steepness;      ///< length of that gradient
   S rising;         ///< change of the shape's function along the ray, into the past
   Vec4<S> emitted;  ///< the event in the scene's chart
+  S lean;           ///< of a normal that is not the surface's: how much of the surface's was added to it
 };
+
+/// Puts the normal that shading takes in the place of the surface's, whose gradient is `slope` and rises by
+/// `rising` along the ray. A normal on whose back the ray looks leans over until it sees it edge-on: which
+/// side is seen, is the surface's affair. Returns by how much.
+template <class S, class Body, class Shape>
+S take_shading_normal(const Body& body, const Shape& shape, const Meeting<S>& here, const PathPoint<S>& P,
+                      const Tetrad<S>& tetrad, const S& rising, Vec4<S>& slope) {
+  const Vec4<S> shading = gradient(body, shape.shading(here.X), P.event, tetrad, here.tau);
+  const S lean = min(max(S(0.0), S(0.0) - dot(shading, P.local) / rising), S(1e9));
+  slope = shading + lean * slope;
+  return lean;
+}
 
 /// The crossing of a path with an object near the affine length `found`. Paths and bodies share a chart, and
 /// `scene_event` gives the scene's chart coordinates of its events.
@@ -52,10 +65,18 @@ Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, 
   const S length = sqrt(inner(g, u, u)), frequency = -inner(g, P.tangent, u) / length;
 
   // The emission angle: between the photon and the unit normal, on the side to which the photon leaves.
-  const Vec4<S> slope = gradient(body, surface, P.event, static_tetrad(metric, P.event), here.tau);
+  const Tetrad<S> tetrad = static_tetrad(metric, P.event);
+  Vec4<S> slope = gradient(body, surface, P.event, tetrad, here.tau);
+  const S rising = dot(slope, P.local);
+  S lean(0.0), seen = rising;
+  if constexpr (requires { shape.is_smooth(); })
+    if (shape.is_smooth()) {
+      lean = take_shading_normal(body, shape, here, P, tetrad, rising, slope);
+      seen = dot(slope, P.local);
+    }
   const S steepness =
       sqrt(slope[1] * slope[1] + slope[2] * slope[2] + slope[3] * slope[3] - slope[0] * slope[0]);
-  const S rising = dot(slope, P.local), mu = abs(rising) / (frequency * steepness);
+  const S mu = abs(seen) / (frequency * steepness);
   const auto uv = surface.uv(here.X);
   const Vec4<S> emitted = scene_event(P.event);
   return {{S(0.0), here.lambda, uv[0], uv[1], S(1.0) / frequency, emitted[0], here.tau, min(mu, S(1.0))},
@@ -67,7 +88,8 @@ Crossed<S> record_crossing(const M& metric, const Path& path, const Body& body, 
           slope,
           steepness,
           rising,
-          emitted};
+          emitted,
+          lean};
 }
 
 /// What of the crossings is written down: the scene's Records, and what they mean for each object.

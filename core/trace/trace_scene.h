@@ -26,7 +26,8 @@ struct TracedBand {
 };
 
 /// Chooses max_lookback where the scene leaves it open, and makes the scene ready; the tracer's pixels are
-/// the samples of the camera. Throws InputError (with the JSON pointer) for what the spacetime cannot hold.
+/// the samples of the camera. The scene must outlive the tracer. Throws InputError (with the JSON pointer)
+/// for what the spacetime cannot hold.
 std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, const std::string& place);
 
 /// Tells of objects that are not small against the curvature, and of lamps that objects shut in.

@@ -1,0 +1,175 @@
+// What it costs to find where rays meet a mesh, and to read one. Rays go through the search of the tracer,
+// one lane at a time; if Embree is there, its rays stand beside.
+#include <benchmark/benchmark.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "core/scene/load_mesh.h"
+#include "core/trace/crossing.h"
+#include "metrics/minkowski_kernel.h"
+#include "tests/mesh_shapes.h"
+#ifdef NULLCONE_EMBREE
+#include <embree3/rtcore.h>
+#endif
+
+namespace nullcone {
+namespace {
+
+using namespace host;
+
+/// Edges of the icosahedron in so many parts: 10^3 to 10^6 triangles.
+constexpr int kParts[] = {7, 22, 71, 224};
+
+double bumpy(const Vec3<double>& d) {
+  return 1 + 0.1 * std::sin(9 * d[0]) * std::sin(7 * d[1] + 1) * std::sin(8 * d[2]);
+}
+const TriangleSoup& soup_of(int parts) {
+  static std::map<int, TriangleSoup> made;
+  const auto found = made.find(parts);
+  return found != made.end() ? found->second
+                             : made.emplace(parts, test::sphere_soup(parts, false, bumpy)).first->second;
+}
+const Mesh& mesh_of(int parts) {
+  static std::map<int, Mesh> made;
+  const auto found = made.find(parts);
+  return found != made.end() ? found->second : made.emplace(parts, make_mesh(soup_of(parts))).first->second;
+}
+
+struct Start {
+  Vec3<double> from, along;
+};
+
+/// From a camera whose picture the mesh fills, line by line; or from anywhere to anywhere.
+std::vector<Start> starts(bool camera) {
+  std::vector<Start> out;
+  test::Random random(1);
+  constexpr int kWide = 300;
+  for (int i = 0; i < kWide * kWide; ++i) {
+    const double x = 0.16 * (2.0 * (i % kWide) / kWide - 1), y = 0.16 * (2.0 * (i / kWide) / kWide - 1);
+    const Vec3<double> from = camera ? Vec3<double>{{0, 0, -4}} : 4.0 * random.direction();
+    const Vec3<double> to =
+        camera ? from + Vec3<double>{{x, y, 1}} : 1.1 * random.uniform(0, 1) * random.direction();
+    out.push_back({from, normalised(to - from)});
+  }
+  return out;
+}
+
+void count_rays(benchmark::State& state, std::size_t rays, std::size_t hits) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays));
+  state.counters["met"] = static_cast<double>(hits) / static_cast<double>(rays);
+}
+
+void mesh_rays(benchmark::State& state, int parts, bool camera) {
+  const Mesh& mesh = mesh_of(parts);
+  const AnyShape shape(MeshShape{view_of(mesh)});
+  const RestPlacing<Minkowski> placing{
+      {}, {{0, 0, 0, 0}}, true, {Vec3<double>{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, mesh.ball};
+  const std::vector<Start> rays = starts(camera);
+  std::size_t hits = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    hits = 0;
+    for (const Start& s : rays) {
+      const auto launch = placing.launch(Vec4<double>{{0, s.from[0], s.from[1], s.from[2]}});
+      const auto ray = placing.ray(launch, Vec4<double>{{-1, s.along[0], s.along[1], s.along[2]}});
+      hits += first_crossing(ray, shape, 100.0, 1.6e-14).met;
+    }
+  }
+  count_rays(state, rays.size(), hits);
+}
+
+void mesh_tree(benchmark::State& state, int parts) {
+  for ([[maybe_unused]] auto _ : state) {
+    state.PauseTiming();
+    TriangleSoup soup = soup_of(parts);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(make_mesh(std::move(soup)));
+  }
+  state.SetItemsProcessed(state.iterations() * 20 * parts * parts);
+}
+
+/// Text and tree.
+void mesh_obj(benchmark::State& state, int parts) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("nullcone_bench_" + std::to_string(getpid()) + ".obj"));
+  {
+    std::ofstream out(path);
+    char line[128];
+    const TriangleSoup& soup = soup_of(parts);
+    for (const auto& p : soup.positions)
+      out.write(line, std::snprintf(line, sizeof line, "v %.9f %.9f %.9f\n", p[0], p[1], p[2]));
+    for (const auto& t : soup.triangles)
+      out.write(line, std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1));
+  }
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(path, 1)));
+  state.SetItemsProcessed(state.iterations() * 20 * parts * parts);
+  std::filesystem::remove(path);
+}
+
+#ifdef NULLCONE_EMBREE
+/// Embree 3 in single precision, ray by ray, with its robust flag.
+void embree_rays(benchmark::State& state, int parts, bool camera) {
+  const TriangleSoup& soup = soup_of(parts);
+  RTCDevice device = rtcNewDevice("threads=1");
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* const positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, soup.positions.size()));
+  for (std::size_t i = 0; i < soup.positions.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(soup.positions[i][k]);
+  void* const indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                                soup.triangles.size());
+  std::memcpy(indices, soup.triangles.data(), 12 * soup.triangles.size());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene);
+  const std::vector<Start> rays = starts(camera);
+  std::size_t hits = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    hits = 0;
+    for (const Start& s : rays) {
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRayHit ray{};
+      ray.ray.org_x = static_cast<float>(s.from[0]), ray.ray.dir_x = static_cast<float>(s.along[0]);
+      ray.ray.org_y = static_cast<float>(s.from[1]), ray.ray.dir_y = static_cast<float>(s.along[1]);
+      ray.ray.org_z = static_cast<float>(s.from[2]), ray.ray.dir_z = static_cast<float>(s.along[2]);
+      ray.ray.tfar = 100, ray.ray.mask = ~0U;
+      ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene, &context, &ray);
+      hits += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+  count_rays(state, rays.size(), hits);
+  rtcReleaseScene(scene);
+  rtcReleaseDevice(device);
+}
+#endif
+
+}  // namespace
+}  // namespace nullcone
+
+int main(int argc, char** argv) {
+  using namespace nullcone;
+  for (const int parts : kParts) {
+    const std::string triangles = "/" + std::to_string(20 * parts * parts);
+    for (const bool camera : {true, false}) {
+      const std::string rays = camera ? "_camera" : "_random";
+      benchmark::RegisterBenchmark(("mesh" + rays + triangles).c_str(), mesh_rays, parts, camera);
+#ifdef NULLCONE_EMBREE
+      benchmark::RegisterBenchmark(("embree" + rays + triangles).c_str(), embree_rays, parts, camera);
+#endif
+    }
+    benchmark::RegisterBenchmark(("mesh_tree" + triangles).c_str(), mesh_tree, parts);
+    benchmark::RegisterBenchmark(("mesh_obj" + triangles).c_str(), mesh_obj, parts);
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
