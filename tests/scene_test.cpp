@@ -84,6 +84,10 @@ TEST(Scene, ValuesOutOfRangeAreRefusedWithTheirPointer) {
       {"/objects/0/shape/radius", 1e16, "/objects/0/shape/radius", "1e15"},
       {"/objects/1/shape/edges/1", 0, "/objects/1/shape/edges/1", "expected"},
       {"/objects/1/shape/edges/0", -1, "/objects/1/shape/edges/0", "expected"},
+      {"/objects/1/shape",
+       {{"type", "box"}, {"edges", {1, 1e-101, 1}}},
+       "/objects/1/shape/edges/1",
+       "1e-100"},
       {"/objects/1/shape/edges", {1, 2, 3}, "/objects/1/shape/edges", "2 numbers"},
       {"/camera/resolution/0", 0, "/camera/resolution/0", "expected"},
       {"/camera/resolution/1", -5, "/camera/resolution/1", "expected"},
@@ -101,6 +105,8 @@ TEST(Scene, ValuesOutOfRangeAreRefusedWithTheirPointer) {
       {"/max_lookback", 0, "/max_lookback", "expected"},
       {"/max_lookback", -1, "/max_lookback", "expected"},
       {"/observer/event/3", 1e16, "/observer/event/3", "expected"},
+      {"/observer/worldline", {{"type", "geodesic"}}, "/observer/event", "beside worldline"},
+      {"/observer/proper_time", 3, "/observer/proper_time", "expected worldline"},
       {"/objects", json::array(), "/objects", "empty"},
   };
   for (const auto& [pointer, value, place, part] : cases)

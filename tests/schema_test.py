@@ -14,50 +14,8 @@ import time
 
 import jsonschema
 
-from schema import mutate, seeds
-
-# What a schema cannot say: the reader's complaint, and what it is about.
-UNSAID = [
-    (r"names two of them", "different names"),
-    (r"is not slower than light", "the length of a velocity"),
-    (r"expected a direction, (found|not)", "the length of a direction"),
-    (r"not parallel to z_axis", "directions beside one another"),
-    (r"asks for more than 268435456 pixels", "products of pixels"),
-    (r"asks for more than 268435456 rays", "products of pixels and samples"),
-    (r"has only one sky", "how many skies a spacetime has"),
-    (r"has no infinity to hold a sky", "whether it has any"),
-    (r"is a second sky", "one sky of each side"),
-    (r"expected the name of an object of the scene", "bodies of lamps"),
-    (r"is the sky; expected an object that a lamp", "bodies of lamps"),
-    (r"expected at most \d+ lamps with", "products of lamps and paths"),
-    (r"expected a later time than before", "the order of keyframes"),
-    (r"dataset has no such object", "objects of the dataset"),
-    (r"dataset has no (such lamp|lamps)", "lamps of the dataset"),
-    (r"the dataset has \d+ paths? a lamp", "paths of the dataset"),
-    (r"all its keyframes by t, or all by tau", "clocks in one texture or spectrum"),
-    (r"'.*' is no number of this look", "paths in the look"),
-    (r"expected a number above 1.01 times from", "order of numbers"),
-    (r"expected a number greater than from", "order of numbers"),
-    (r"\[first, last\], and at most 100000", "order of numbers"),
-    (r"expected a greater luminance than before", "order of points"),
-    (r"expected a last luminance from 1e-20", "the last point"),
-    (r"no light that could be seen as white", "chromaticities"),
-    (r"unshifted, the eye sees nothing of this spectrum", "integrals of spectra"),
-    (r"slices fade into one another", "how many slices hold at once"),
-    (r"has a reflectance by wavelength", "light and reflectances"),
-    (r"expected an object that is self-luminous", "objects by name"),
-    (r"/time_slices/\d+: a texture and a spectrum of type materials", "what slices leave out"),
-    (r"spectra within spectra, deeper than 8", "depth"),
-    (r"more than 1000 spectra in one", "counts over many places"),
-    (r"has no temperature", "keyframed reflectances"),
-    (r"/include: cannot (open|read) |no such file", "which files there are"),
-    (r"expected a file that holds|: line \d+: ", "what is in files"),
-]
-# The same by keyframes: which values numbers have at which times. Beside the range that the schema knows.
-RANGE = re.compile(r"expected a number (from|greater than 0)|expected a (vertical|whole number|luminance)|"
-                   r"expected (values from|two whole|3 numbers from|0 to (1|be shown)|at most 1e15|true, or nothing|\[wavelength)|"
-                   r"; expected a whole")
-
+from schema import mutate, rare, seeds
+from schema.unsaid import RANGE, UNSAID, has_keyframes
 
 class Held:
     """Both verdicts of many documents."""
@@ -128,19 +86,6 @@ class Held:
                 continue
             why = complaint or "; ".join(e.message[:100] for e in self.validators[kind].iter_errors(document))
             self.faults.append(f"{what}: the {'reader' if fits else 'schema'} alone refuses it: {why[:300]}")
-
-
-def has_keyframes(document, complaint):
-    """Whether numbers with keyframes stand where the complaint points."""
-    pointer = re.match(r"[^:]*: (/[^:]*):", complaint)
-    for step in pointer[1].strip("/").split("/") if pointer else []:
-        if isinstance(document, list) and step.isdigit() and int(step) < len(document):
-            document = document[int(step)]
-        elif isinstance(document, dict) and step in document and "keyframes" not in document:
-            document = document[step]
-        else:
-            break
-    return '"keyframes"' in json.dumps(document)
 
 
 def entries(name, at, pointer=""):
@@ -214,63 +159,6 @@ def check_shipped(held, source):
             held.faults.append(f"{path}: {error.json_path}: {error.message[:200]}")
 
 
-def rare(held):
-    """What mutations do not find."""
-    deep = {"type": "equal_energy"}
-    for _ in range(9):
-        deep = {"type": "sum", "of": [deep]}
-    slices = [{"channel": "t", "from": -9, "to": 9, "fade": 18, "intensity": 1}] * 20
-    many = {"type": "sum", "of": [{"type": "equal_energy"}] * 1001}
-    spectral = {"ball": {"surface": {"type": "lambertian"}, "spectrum": {"type": "equal_energy"}}}
-    for what, look in {
-        "deep": {"objects": {"ball": {"spectrum": deep}}},
-        "many": {"objects": {"ball": {"spectrum": many}}},
-        "slices": {"objects": {"ball": {"time_slices": slices}}},
-        "light": {"objects": spectral},
-        "scale": {"objects": spectral, "lights": {name: {"on": False} for name in seeds.LAMPS}, "legend": {"scale": {"object": "ball"}}},
-        "dark": {"objects": {"ball": {"spectrum": {"type": "constant", "from_nm": 1e4, "luminance_cd_m2": 1}}}},
-        "last": {"tone": {"curve": "table", "points": [[0, 0]]}},
-        "zero": {"tone": {"curve": "table", "points": [[0, 0.5], [1, 1]]}},
-        "white": {"white_point": {"xy": [0.735, 0.265]}},
-        "ratio": {"legend": {"scale": {"object": "ball", "from": 2, "to": 2}}},
-        "band": {"objects": {"ball": {"spectrum": {"type": "constant", "from_nm": 500, "to_nm": 500}}}},
-        "frames": {"objects": {"ball": {"texture": {"type": "image", "file": "#", "sequence": {"frames": [0, 100000]}}}}},
-        "lines": {"objects": {"ball": {"surface": {"type": "lambertian"}, "spectrum": {"type": "sum", "of": [
-            {"type": "lit", "light": {"type": "lines", "lines": [[500, 1]]}, "reflectance": {"type": "equal_energy"}}]}}}},
-        "warm": {"objects": {"ball": {"surface": {"type": "lambertian"}, "spectrum": {
-            "type": "black_body", "temperature_K": {"keyframes": [[0, 1000]], "by": "t"}}}}},
-        "no material": {"objects": {"ball": {"time_slices": [{"channel": "t", "spectrum": {"type": "materials", "spectra": [{"type": "equal_energy"}]}}]}}},
-        "order": {"exposure": {"ev": {"keyframes": [[0, 1], [0, 2]]}}},
-        "clocks": {"objects": {"ball": {"spectrum": {"type": "gaussian", "centre_nm": {"keyframes": [[0, 500]], "by": "t"},
-                                                     "fwhm_nm": {"keyframes": [[0, 50]], "by": "tau"}}}}},
-        "stranger": {"objects": {"nobody": {}}},
-        "no lamp": {"lights": {"nobody": {}}},
-        "no path": {"lights": {"sun": {"paths": [seeds.PATHS]}}},
-        "no number": {"legend": {"temperature": "nobody"}},
-        "points": {"tone": {"curve": "table", "points": [[1, 0.5], [1, 0.5]]}},
-        "no file": {"sensor": {"file": "none.csv"}},
-        "keys": {"objects": {"ball": {"opacity": {"keyframes": [[0, 0], [1, 2]], "by": "t"}}}},
-        "one key": {"objects": {"ball": {"spectrum": {"type": "equal_energy", "radiance": {"keyframes": [[0, 1]], "by": "t"}}}}},
-        "axis": {"objects": {"ball": {"texture": {"type": "image", "file": "a", "rotate_deg": {"axis": [0, 0, 0], "angle_deg": 0}}}}},
-    }.items():
-        held.add(what, "look", look)
-    flat = seeds.SCENES["flat"]
-    for what, path, value in [
-        ("names", ("objects", 1, "name"), "ball"), ("velocity", ("observer", "velocity"), [0.9, 0.9, 0]),
-        ("parallel", ("objects", 0, "placing", "y_axis"), [0, -2, 0]), ("pixels", ("camera", "resolution"), [100000, 100000]),
-        ("rays", ("camera", "resolution"), [16384, 16384]), ("sky", ("objects", 3, "shape", "side"), 2),
-        ("second", ("objects", 2), {"name": "sky2", "shape": {"type": "sky"}}), ("body", ("lights", "lamps", 0, "body"), "sky"),
-        ("nobody", ("lights", "lamps", 0, "body"), "nobody"),
-        ("paths", ("lights", "paths"), 16),
-        ("lamps", ("lights", "lamps"), [{**flat["lights"]["lamps"][0], "name": f"sun{i}"} for i in range(30)]),
-    ]:
-        held.add(what, "scene", mutate.changed(flat, path, value))
-    held.add("list", "scene", mutate.changed(flat, ("camera",), {"include": "list.json"}))
-    dark = mutate.without(mutate.without(flat, ("lights",)), ("look",))
-    held.add("dark", "scene", dark)
-    held.add("no sky", "scene", mutate.changed(dark, ("metric",), {"name": "goedel"}))
-
-
 def main():
     reader, source = sys.argv[1], pathlib.Path(sys.argv[2])
     begun = time.time()
@@ -284,7 +172,7 @@ def main():
         check_schemas(held, own)
         for kind, document in own + small:
             held.add("as it is", kind, document)
-        rare(held)
+        rare.add(held)
         tried = set()
         for kind, document in own + small:
             name = kind + ".schema.json"

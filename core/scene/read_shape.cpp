@@ -22,7 +22,8 @@ void read_sky(JsonObject& shape, const MetricDescription& metric, Shape& out) {
 
 void read_edges(JsonObject& shape, std::size_t count, Shape& out) {
   out.type = count == 2 ? ShapeType::quad : ShapeType::box;
-  std::ranges::copy(shape.numbers("edges", count, 1e-300, kLargest), out.edges.begin());
+  const double least = count == 2 ? 1e-300 : kLeastLength;  // a box is one size, dome or not, alone or joined
+  std::ranges::copy(shape.numbers("edges", count, least, kLargest), out.edges.begin());
 }
 
 }  // namespace

@@ -9,8 +9,6 @@ namespace nullcone {
 
 namespace {
 
-constexpr double kLeast = 1e-100;  // its square is a number still
-
 double radius_about_origin(const Primitive& p) {
   const double centre = std::hypot(p.centre[0], p.centre[1], p.centre[2]);
   switch (p.type) {
@@ -25,7 +23,9 @@ double radius_about_origin(const Primitive& p) {
   }
 }
 
-double read_length(JsonObject& shape, std::string_view key) { return shape.number(key, kLeast, kLargest); }
+double read_length(JsonObject& shape, std::string_view key) {
+  return shape.number(key, kLeastLength, kLargest);
+}
 
 Primitive round_about_z(PrimitiveType type, double radius, double half_height) {
   Primitive out;
@@ -39,10 +39,10 @@ Primitive read_primitive(JsonObject& shape, const std::string& type) {
   if (type == "sphere") {
     out.half.fill(read_length(shape, "radius"));
   } else if (type == "ellipsoid") {
-    std::ranges::copy(shape.numbers("semi_axes", 3, kLeast, kLargest), out.half.begin());
+    std::ranges::copy(shape.numbers("semi_axes", 3, kLeastLength, kLargest), out.half.begin());
   } else if (type == "box") {
     out.type = PrimitiveType::box;
-    std::ranges::copy(shape.numbers("edges", 3, kLeast, kLargest), out.half.begin());
+    std::ranges::copy(shape.numbers("edges", 3, kLeastLength, kLargest), out.half.begin());
     for (double& edge : out.half) edge *= 0.5;
   } else if (type == "cylinder") {
     const bool open = shape.boolean("open", false);

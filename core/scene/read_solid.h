@@ -9,6 +9,9 @@
 
 namespace nullcone {
 
+/// Lengths of bodies are no less: its square is a number still.
+inline constexpr double kLeastLength = 1e-100;
+
 /// The solid that a shape of a type "ellipsoid", "box", "cylinder", "disk", "ring", "union", "intersection"
 /// or "difference" describes. The caller finishes the shape.
 std::shared_ptr<const Solid> read_solid(JsonObject& shape, const std::string& type);

@@ -130,7 +130,7 @@ def example(schema, name, part, depth=0):
         out = {key: example(schema, name, part["properties"].get(key), depth + 1) for key in part.get("required", [])}
         for alternative in part.get("anyOf", [])[:1]:
             inner = example(schema, *schema.follow(name, alternative["$ref"]), depth + 1) if "$ref" in alternative else {}
-            out.update(inner)
+            out.update(inner if isinstance(inner, dict) else {})
         for key, value in part["properties"].items():
             if isinstance(value, dict) and ("const" in value or key == "type"):
                 out.setdefault(key, example(schema, name, value, depth + 1))

@@ -2,7 +2,8 @@
 
 STATIC = {"type": "static", "event": [0, 1, 2, 3]}
 FALLING = {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0.5, 0, 0.25]}
-BALL = {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": {"type": "coordinate", "centre": [3, 0, 0]}}
+THERE = {"type": "coordinate", "centre": [3, 0, 0]}
+BALL = {"name": "ball", "shape": {"type": "sphere", "radius": 0.5}, "placing": THERE}
 
 SCENES = {
     "flat": {
@@ -61,8 +62,7 @@ SCENES = {
         "metric": {"name": "goedel", "a": {"keyframes": [[0, 1], [1, 2]]}},
         "observer": {"event": [None, 0, {"keyframes": [[-1, 0], [1, 0.5]], "interpolation": "smooth", "by": "time"}, 0]},
         "camera": {"type": "panorama", "fov_deg": [{"keyframes": [[0, 100]]}, 25], "resolution": [64, 48]},
-        "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": {"keyframes": [[0, 1], [1, 2]]}},
-                     "placing": {"type": "coordinate", "centre": [3, 0, 0]}}],
+        "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": {"keyframes": [[0, 1], [1, 2]]}}, "placing": THERE}],
         "look": {"exposure": {"ev": {"keyframes": [[0, -4], [2, 0]], "by": "frame"}}},
     },
     "own_time": {
@@ -70,6 +70,57 @@ SCENES = {
         "metric": {"name": "minkowski"},
         "observer": {"event": [{"keyframes": [[0, 0], [1, 2]]}, 0, 0, 0]},
         "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48]},
+        "objects": [BALL],
+    },
+    "shapes": {
+        "metric": {"name": "minkowski"},
+        "observer": {"event": [0, 0, 0, 0]},
+        "camera": {"type": "fisheye", "fov_deg": 180, "resolution": [64, 48], "forward": [1, 1, 0], "up": [0, 0, -2]},
+        "max_lookback": {"lambda": 20, "t": 10},
+        "objects": [
+            {"name": "egg", "shape": {"type": "ellipsoid", "semi_axes": [1, 2, 3], "dome": False},
+             "placing": {"type": "local", "worldline": FALLING, "spin": {"axis": [0, 1, 0], "rate_deg": -90}}},
+            {"name": "can", "shape": {"type": "cylinder", "radius": 0.5, "height": 2, "open": False, "dome": True}, "placing": THERE},
+            {"name": "disk", "shape": {"type": "disk", "radius": 0.5}, "placing": THERE},
+            {"name": "ring", "shape": {"type": "ring", "radius": 0.5, "inner_radius": 0.25}, "placing": THERE},
+            {"name": "room", "shape": {"type": "box", "edges": [1, 2, 3], "dome": True}, "placing": THERE},
+            {"name": "whole", "shape": {"type": "difference", "dome": False, "of": [
+                {"type": "box", "edges": [1, 1, 2], "centre": [0, 0, 1], "z_axis": [0, 1, 0], "y_axis": [1, 0, 0]},
+                {"type": "sphere", "radius": 0.5, "centre": [0.5, 0, 0], "z_axis": [1, 0, 0], "y_axis": [0, 0, 1]},
+                {"type": "union", "of": [
+                    {"type": "ellipsoid", "semi_axes": [1, 2, 3], "centre": [0, 1, 0], "z_axis": [1, 0, 0], "y_axis": [0, 0, 1]},
+                    {"type": "cylinder", "radius": 0.25, "height": 2, "open": False, "centre": [0, 0, 0.5], "z_axis": [1, 0, 0],
+                     "y_axis": [0, 0, 1]}]}]}, "placing": THERE},
+        ],
+    },
+    "cube": {
+        "metric": {"name": "kerr_schild"},
+        "observer": {"worldline": {"type": "accelerated", "event": [0, 20, 0, 3], "velocity": [0.5, 0, 0.25], "acceleration": [0, 0.5, 0]},
+                     "proper_time": 3, "frame": "normal"},
+        "camera": {"type": "cube_map", "resolution": [48, 8], "azimuth_deg": 30},
+        "max_lookback": {"t": 50},
+        "objects": [BALL],
+    },
+    "tetrahedron": {
+        "metric": {"name": "goedel"},
+        "observer": {"worldline": {"type": "circular", "event": [0, 3, 0, 0], "speed": "closed", "clockwise": True}},
+        "camera": {"type": "tetrahedron_map", "resolution": [32, 16], "forward": [1, 0, 0.5]},
+        "max_lookback": {"lambda": 20},
+        "objects": [BALL],
+    },
+    "journey": {
+        "frames": {"count": 2, "from": 0, "to": 1, "time": "proper"},
+        "metric": {"name": "minkowski"},
+        "observer": {"worldline": {"type": "circular", "event": [0, 3, 0, 0], "speed": {"keyframes": [[0, 0.25], [1, 0.5]]}}, "proper_time": None},
+        "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48], "forward": [{"keyframes": [[0, 1], [1, 2]]}, 0, 0.5]},
+        "max_lookback": {"t": {"keyframes": [[0, 10], [1, 20]]}},
+        "objects": [BALL],
+    },
+    "falling": {
+        "frames": {"count": 2, "from": 0, "to": 1, "time": "proper"},
+        "metric": {"name": "kerr_schild"},
+        "observer": {"worldline": {"type": "geodesic", "event": [0, 20, 0, 3], "velocity": [0, 0.25, 0]}, "proper_time": 0},
+        "camera": {"type": "sphere", "resolution": [64, 32]},
         "objects": [BALL],
     },
     "included": {
