@@ -1,6 +1,7 @@
 // Reads documents as the tools do, one JSON a line of standard input, and says of each "accepted" or what is
 // wrong: {"scene": …}, or {"look": …, "objects": [names], "lights": [names], "paths": n}. Argument: the
 // folder in which files are looked for.
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -62,6 +63,7 @@ Manifest manifest_of(const json& line) {
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::vector<MetricDescription> metrics = metric_descriptions();
+  std::filesystem::current_path(argv[1]);  // meshes are looked for beside the scene
   for (std::string text; std::getline(std::cin, text);) {
     const json line = json::parse(text);
     try {

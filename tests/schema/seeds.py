@@ -83,6 +83,7 @@ SCENES = {
             {"name": "can", "shape": {"type": "cylinder", "radius": 0.5, "height": 2, "open": False, "dome": True}, "placing": THERE},
             {"name": "disk", "shape": {"type": "disk", "radius": 0.5}, "placing": THERE},
             {"name": "ring", "shape": {"type": "ring", "radius": 0.5, "inner_radius": 0.25}, "placing": THERE},
+            {"name": "rock", "shape": {"type": "mesh", "file": "tetra.obj", "scale": 0.5, "normals": "smooth", "dome": True}, "placing": THERE},
             {"name": "room", "shape": {"type": "box", "edges": [1, 2, 3], "dome": True}, "placing": THERE},
             {"name": "whole", "shape": {"type": "difference", "dome": False, "of": [
                 {"type": "box", "edges": [1, 1, 2], "centre": [0, 0, 1], "z_axis": [0, 1, 0], "y_axis": [1, 0, 0]},

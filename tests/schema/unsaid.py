@@ -42,7 +42,7 @@ UNSAID = [
     (r"spectra within spectra, deeper than 8", "depth"),
     (r"more than 1000 spectra in one", "counts over many places"),
     (r"has no temperature", "keyframed reflectances"),
-    (r"/include: cannot (open|read) |no such file", "which files there are"),
+    (r"/include: cannot (open|read) |no such file|cannot open the file", "which files there are"),
     (r"expected a file that holds|: line \d+: ", "what is in files"),
 ]
 # The same by keyframes: which values numbers have at which times. Beside the range that the schema knows.
