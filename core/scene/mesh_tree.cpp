@@ -204,7 +204,7 @@ bool is_closed(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::
     if ((end - begin) % 2 != 0) return false;
     std::sort(begin, end);
     for (auto e = begin; e != end; e += 2)
-      if (e[0] % 2 != 0 || e[1] != e[0] + 1 || (e + 2 != end && e[2] / 2 == e[0] / 2)) return false;
+      if (e[0] % 2 != 0 || e[1] != e[0] + 1) return false;
   }
   return !triangles.empty();
 }

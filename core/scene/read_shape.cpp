@@ -49,7 +49,8 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::s
       out.type = ShapeType::solid;
       out.solid = read_solid(shape, type);
     }
-    if (out.dome && out.is_open()) shape.refuse("dome", "expected a closed shape");
+    const bool open = (out.solid && !out.solid->closed()) || (out.mesh && !out.mesh->closed);
+    if (out.dome && open) shape.refuse("dome", "expected a closed shape");
   }
   shape.finish();
   return out;

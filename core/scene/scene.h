@@ -78,11 +78,6 @@ struct Shape {
   std::shared_ptr<const Solid> solid;       ///< any other body, and what is made of several
   std::shared_ptr<const Mesh> mesh;
   unsigned sky = 1;  ///< sky: of which infinity, from 1
-
-  /// Whether it has no inside.
-  bool is_open() const {
-    return type == ShapeType::quad || (solid && !solid->closed()) || (mesh && !mesh->closed);
-  }
 };
 
 enum class PlacingType {

@@ -40,10 +40,12 @@ class AnyShape {
   bool starts_inside() const {
     return with([](const auto& shape) { return shape.starts_inside(); });
   }
-  /// Whether a search does not care on which side of it a ray is: it has no inside, or is a mesh.
-  bool is_sheet() const {
-    return type_ == Type::box ? box_.flat() : type_ == Type::solid ? !solid_.closed() : true;
+  /// Whether it has no inside.
+  bool is_open() const {
+    return type_ == Type::box ? box_.flat() : type_ == Type::solid ? !solid_.closed() : !mesh_.closed();
   }
+  /// Whether a search does not care on which side of it a ray is.
+  bool is_sheet() const { return type_ == Type::mesh || is_open(); }
   template <class S>
   Vec3<S> outward(const Vec3<S>& X) const {
     return facet(X).normal(X);

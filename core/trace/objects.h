@@ -53,7 +53,8 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
     return "is too large: parts of it would have to move faster than light";
   const double tau = local_time(body, observer, body.first_guess(observer));
   if (!shape.hides(body.local(observer, tau).second)) return nullptr;
-  if (described.is_open()) return "holds the observer in its surface";
+  if constexpr (requires { shape.is_open(); })
+    if (shape.is_open()) return "holds the observer in its surface";
   return described.dome ? "is a dome, but the observer stands outside it"
                         : "holds the observer; what is seen from inside needs \"dome\": true";
 }
