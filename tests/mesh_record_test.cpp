@@ -157,7 +157,7 @@ void compare_with_sphere(const Placing& placing, const Vec4<double>& event, doub
 TEST(MeshRecord, AMeshSphereInGoedelsUniverse) {
   Random random(12);
   int met = 0, other = 0, rays = 0;
-  for (int n = 0; n < (kSanitized ? 8 : 300); ++n) {
+  for (int n = 0; n < (kSanitized ? 60 : 300); ++n) {
     const double radius = random.logarithmic(1e-3, 0.5);
     TriangleSoup soup = sphere_soup(24, false, round_as);
     move_and_scale(soup, {}, radius);
