@@ -50,6 +50,8 @@ TEST_F(ObjFiles, ObjPolygonsTextureAndNormals) {
   EXPECT_EQ(polygon->triangles.size(), 3U);
   EXPECT_FALSE(polygon->closed);
   EXPECT_NEAR(area_and_volume(*polygon)[0], 2.5, 1e-14);
+  write("w.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf 4 5 1 2 3\n");
+  EXPECT_NEAR(area_and_volume(*mesh("w.obj"))[0], 2.5, 1e-14) << "the corner that turns inwards is no ear";
   ASSERT_EQ(polygon->uv.size(), 3U);
   ASSERT_EQ(polygon->normals.size(), 3U);
   EXPECT_EQ(polygon->normals[1].corner[2][2], 1);
