@@ -9,11 +9,14 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
+#include <random>
 
 #include "core/scene/load_mesh.h"
+#include "core/trace/any_shape.h"
 #include "core/trace/crossing.h"
+#include "core/trace/placing.h"
 #include "metrics/minkowski_kernel.h"
-#include "tests/mesh_shapes.h"
 #ifdef NULLCONE_EMBREE
 #include <embree3/rtcore.h>
 #endif
@@ -23,17 +26,41 @@ namespace {
 
 using namespace host;
 
-/// Edges of the icosahedron in so many parts: 10^3 to 10^6 triangles.
-constexpr int kParts[] = {7, 22, 71, 224};
+/// Circles of latitude: 10^3 to 10^6 triangles.
+constexpr int kParts[] = {16, 50, 159, 500};
 
-double bumpy(const Vec3<double>& d) {
-  return 1 + 0.1 * std::sin(9 * d[0]) * std::sin(7 * d[1] + 1) * std::sin(8 * d[2]);
+std::int64_t triangles_of(int parts) { return std::int64_t{4} * parts * (parts - 1); }
+
+/// A bumpy sphere, by longitude and latitude; every position once.
+TriangleSoup bumpy_sphere(int parts) {
+  TriangleSoup out;
+  const auto rows = static_cast<std::uint32_t>(parts), columns = 2 * rows;
+  const auto add = [&](double longitude, double z) {
+    const double rho = std::sqrt(1 - z * z), x = rho * std::cos(longitude), y = rho * std::sin(longitude);
+    const double radius = 1 + 0.1 * std::sin(9 * x) * std::sin(7 * y + 1) * std::sin(8 * z);
+    out.positions.push_back({radius * x, radius * y, radius * z});
+  };
+  add(0, -1), add(0, 1);
+  for (std::uint32_t j = 1; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i)
+      add(2 * std::numbers::pi * i / columns, -std::cos(std::numbers::pi * j / rows));
+  for (std::uint32_t j = 1; j <= rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::uint32_t row = 2 + (j - 1) * columns, next = (i + 1) % columns;
+      const std::uint32_t a = row - columns + i, b = row - columns + next, c = row + i, d = row + next;
+      if (j == 1)
+        out.triangles.push_back({0, d, c});
+      else if (j == rows)
+        out.triangles.push_back({a, b, 1});
+      else
+        out.triangles.push_back({a, b, d}), out.triangles.push_back({a, d, c});
+    }
+  return out;
 }
 const TriangleSoup& soup_of(int parts) {
   static std::map<int, TriangleSoup> made;
   const auto found = made.find(parts);
-  return found != made.end() ? found->second
-                             : made.emplace(parts, test::sphere_soup(parts, false, bumpy)).first->second;
+  return found != made.end() ? found->second : made.emplace(parts, bumpy_sphere(parts)).first->second;
 }
 const Mesh& mesh_of(int parts) {
   static std::map<int, Mesh> made;
@@ -48,13 +75,17 @@ struct Start {
 /// From a camera whose picture the mesh fills, line by line; or from anywhere to anywhere.
 std::vector<Start> starts(bool camera) {
   std::vector<Start> out;
-  test::Random random(1);
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> part;
+  const auto direction = [&] {
+    return normalised(Vec3<double>{{normal(engine), normal(engine), normal(engine)}});
+  };
   constexpr int kWide = 300;
   for (int i = 0; i < kWide * kWide; ++i) {
     const double x = 0.16 * (2.0 * (i % kWide) / kWide - 1), y = 0.16 * (2.0 * (i / kWide) / kWide - 1);
-    const Vec3<double> from = camera ? Vec3<double>{{0, 0, -4}} : 4.0 * random.direction();
-    const Vec3<double> to =
-        camera ? from + Vec3<double>{{x, y, 1}} : 1.1 * random.uniform(0, 1) * random.direction();
+    const Vec3<double> from = camera ? Vec3<double>{{0, 0, -4}} : 4.0 * direction();
+    const Vec3<double> to = camera ? from + Vec3<double>{{x, y, 1}} : 1.1 * part(engine) * direction();
     out.push_back({from, normalised(to - from)});
   }
   return out;
@@ -90,7 +121,7 @@ void mesh_tree(benchmark::State& state, int parts) {
     state.ResumeTiming();
     benchmark::DoNotOptimize(make_mesh(std::move(soup)));
   }
-  state.SetItemsProcessed(state.iterations() * 20 * parts * parts);
+  state.SetItemsProcessed(state.iterations() * triangles_of(parts));
 }
 
 /// Text and tree.
@@ -107,7 +138,7 @@ void mesh_obj(benchmark::State& state, int parts) {
       out.write(line, std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1));
   }
   for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(path, 1)));
-  state.SetItemsProcessed(state.iterations() * 20 * parts * parts);
+  state.SetItemsProcessed(state.iterations() * triangles_of(parts));
   std::filesystem::remove(path);
 }
 
@@ -159,7 +190,7 @@ void embree_rays(benchmark::State& state, int parts, bool camera) {
 int main(int argc, char** argv) {
   using namespace nullcone;
   for (const int parts : kParts) {
-    const std::string triangles = "/" + std::to_string(20 * parts * parts);
+    const std::string triangles = "/" + std::to_string(triangles_of(parts));
     for (const bool camera : {true, false}) {
       const std::string rays = camera ? "_camera" : "_random";
       benchmark::RegisterBenchmark(("mesh" + rays + triangles).c_str(), mesh_rays, parts, camera);

@@ -21,8 +21,8 @@ tracing the demo, SSE2 to AVX-512 | bench_trace | earth/sse2 | earth/avx512 |
 tracing three spheres at rest, SSE2 to AVX2 | bench_trace | three_spheres/sse2 | three_spheres/avx2 |
 tracing three spheres at rest, SSE2 to AVX-512 | bench_trace | three_spheres/sse2 | three_spheres/avx512 |
 tracing the demo, AVX-512 on one thread to two | bench_trace | earth/avx512 | earth/2_threads |
-a camera's ray on 1003520 triangles to 980 | bench_mesh | mesh_camera/1003520 | mesh_camera/980 | 3
-a random ray on 1003520 triangles to 980 | bench_mesh | mesh_random/1003520 | mesh_random/980 | 3
+a camera's ray on 998000 triangles to 960 | bench_mesh | mesh_camera/998000 | mesh_camera/960 | 3
+a random ray on 998000 triangles to 960 | bench_mesh | mesh_random/998000 | mesh_random/960 | 3
 evaluating a path, one lane to AVX-512 | bench_trace | evaluation/onelane | evaluation/avx512 |
 frames on one thread to two | bench_postrender | frames/black_body_mipmap/1 | frames/black_body_mipmap/2 |
 shading with SSE2 to AVX2 | bench_postrender | shade/black_body_mipmap/sse2 | shade/black_body_mipmap/avx2 |

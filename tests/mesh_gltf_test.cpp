@@ -6,6 +6,8 @@
 namespace nullcone {
 namespace {
 
+class GltfFiles : public MeshFiles {};
+
 /// A glTF of a tetrahedron, with its buffer beside it or in it.
 struct Gltf {
   json document;
@@ -54,7 +56,7 @@ struct Gltf {
   }
 };
 
-TEST_F(MeshFiles, GltfInBothForms) {
+TEST_F(GltfFiles, GltfInBothForms) {
   Gltf gltf;
   // x -> 2 x turned by 90 degrees about z and moved, below a node that mirrors z.
   gltf.document["nodes"] =
@@ -89,7 +91,7 @@ TEST_F(MeshFiles, GltfInBothForms) {
   }
 }
 
-TEST_F(MeshFiles, GltfWithItsBufferAsADataUri) {
+TEST_F(GltfFiles, GltfWithItsBufferAsADataUri) {
   Gltf gltf;
   const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string uri = "data:application/octet-stream;base64,";
@@ -104,7 +106,7 @@ TEST_F(MeshFiles, GltfWithItsBufferAsADataUri) {
   EXPECT_NEAR(area_and_volume(*mesh("t.gltf"))[1], 1.0 / 6, 1e-14);
 }
 
-TEST_F(MeshFiles, HostileGltf) {
+TEST_F(GltfFiles, HostileGltf) {
   const Gltf whole;
   write("t.bin", whole.binary);
   using Pointer = json::json_pointer;
@@ -180,7 +182,7 @@ TEST_F(MeshFiles, HostileGltf) {
   }
 }
 
-TEST_F(MeshFiles, GltfOfManyCopiesEndsInTime) {
+TEST_F(GltfFiles, GltfOfManyCopiesEndsInTime) {
   Gltf gltf;
   json nodes = json::array(), list = json::array(), primitives = json::array();
   for (int i = 0; i < 20000; ++i) nodes.push_back({{"mesh", 0}}), list.push_back(i);

@@ -9,6 +9,8 @@
 namespace nullcone {
 namespace {
 
+class ObjFiles : public MeshFiles {};
+
 constexpr const char* kTetrahedron = R"(# a comment
 mtllib nothing.mtl
 o thing
@@ -23,7 +25,7 @@ f -3 -2 -1
 f 1 4 3
 )";
 
-TEST_F(MeshFiles, ObjOfATetrahedron) {
+TEST_F(ObjFiles, ObjOfATetrahedron) {
   write("t.obj", kTetrahedron);
   const auto read_mesh = mesh("t.obj");
   EXPECT_EQ(read_mesh->triangles.size(), 4U);
@@ -39,7 +41,7 @@ TEST_F(MeshFiles, ObjOfATetrahedron) {
   EXPECT_TRUE(read({{"type", "mesh"}, {"file", "t.obj"}, {"dome", true}}).dome);
 }
 
-TEST_F(MeshFiles, ObjPolygonsTextureAndNormals) {
+TEST_F(ObjFiles, ObjPolygonsTextureAndNormals) {
   // A concave polygon: a fan would cover what is not there.
   write("u.obj",
         "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nvt 0.25 0.5\nvt 1 0\nvn 0 0 7\n"
@@ -48,6 +50,8 @@ TEST_F(MeshFiles, ObjPolygonsTextureAndNormals) {
   EXPECT_EQ(polygon->triangles.size(), 3U);
   EXPECT_FALSE(polygon->closed);
   EXPECT_NEAR(area_and_volume(*polygon)[0], 2.5, 1e-14);
+  write("w.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf 4 5 1 2 3\n");
+  EXPECT_NEAR(area_and_volume(*mesh("w.obj"))[0], 2.5, 1e-14) << "the corner that turns inwards is no ear";
   ASSERT_EQ(polygon->uv.size(), 3U);
   ASSERT_EQ(polygon->normals.size(), 3U);
   EXPECT_EQ(polygon->normals[1].corner[2][2], 1);
@@ -60,7 +64,7 @@ TEST_F(MeshFiles, ObjPolygonsTextureAndNormals) {
   EXPECT_TRUE(read({{"type", "mesh"}, {"file", "u.obj"}, {"normals", "flat"}}).mesh->normals.empty());
 }
 
-TEST_F(MeshFiles, WhatHasNoAreaIsLeftOut) {
+TEST_F(ObjFiles, WhatHasNoAreaIsLeftOut) {
   write("d.obj", std::string(kTetrahedron) + "v 0.5 0 0\nf 1 1 2\nf 1 5 2\nv 0 0 0\nf 1 6 3\n");
   const auto read_mesh = mesh("d.obj");
   EXPECT_EQ(read_mesh->triangles.size(), 4U);
@@ -68,7 +72,7 @@ TEST_F(MeshFiles, WhatHasNoAreaIsLeftOut) {
   expect_refused("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 1 1 1\n", "no triangle with an area");
 }
 
-TEST_F(MeshFiles, ClosedMeansTwoTrianglesAnEdgeInOppositeDirections) {
+TEST_F(ObjFiles, ClosedMeansTwoTrianglesAnEdgeInOppositeDirections) {
   const auto without = [](const std::string& line, const std::string& other) {
     std::string text = kTetrahedron;
     return text.replace(text.find(line), line.size(), other);
@@ -93,7 +97,7 @@ TEST_F(MeshFiles, ClosedMeansTwoTrianglesAnEdgeInOppositeDirections) {
       std::string::npos);
 }
 
-TEST_F(MeshFiles, HostileObj) {
+TEST_F(ObjFiles, HostileObj) {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   expect_refused("a.obj", v, "no faces");
   expect_refused("b.obj", "\n\n# nothing\n", "no faces");
@@ -123,7 +127,7 @@ TEST_F(MeshFiles, HostileObj) {
   expect_refused("words.obj", "It was a dark and stormy night.\n", "no faces");
 }
 
-TEST_F(MeshFiles, WhatIsNoPlainFileOfAFairSize) {
+TEST_F(ObjFiles, WhatIsNoPlainFileOfAFairSize) {
   expect_refused("empty.obj", "", "is empty");
   std::filesystem::create_directory(path("folder.obj"));
   EXPECT_NE(complaint_about("folder.obj").find("is a folder"), std::string::npos);
@@ -143,7 +147,7 @@ TEST_F(MeshFiles, WhatIsNoPlainFileOfAFairSize) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
-TEST_F(MeshFiles, NamesStayBelowTheScenesFolder) {
+TEST_F(ObjFiles, NamesStayBelowTheScenesFolder) {
   write("t.obj", kTetrahedron);
   std::filesystem::create_directory(path("sub"));
   write("sub/T.OBJ", kTetrahedron);

@@ -3,6 +3,7 @@
 
 #include "core/trace/closed_onward.h"
 #include "core/trace/details.h"
+#include "metrics/goedel_kernel.h"
 #include "tests/mesh_shapes.h"
 #include "tests/sanitized.h"
 
@@ -123,6 +124,56 @@ TEST(MeshRecord, TextureCoordinatesAreInterpolatedAndWrapped) {
     EXPECT_GE(crossed.record.u, 0);
     EXPECT_LE(crossed.record.u, 1);
   }
+}
+
+/// Rays towards a mesh of a sphere, and towards the sphere.
+template <class Placing>
+void compare_with_sphere(const Placing& placing, const Vec4<double>& event, double radius,
+                         const AnyShape& mesh, Random& random, int& met, int& other) {
+  const auto launch = placing.launch(event);
+  const double limit = 4 * std::numbers::pi * placing.metric.a, resolution = 4e-15 * norm(spatial(event));
+  for (int n = 0; n < 300; ++n) {
+    const Vec3<double> k = random.direction();
+    const auto ray = placing.ray(launch, Vec4<double>{{-1, k[0], k[1], k[2]}});
+    const Sphere sphere{radius};
+    const Search<double> a = first_crossing(ray, mesh, limit, resolution),
+                         b = first_crossing(ray, sphere, limit, resolution);
+    EXPECT_FALSE(a.given_up);
+    EXPECT_LT(a.steps, 200);
+    met += b.met;
+    if (a.met != b.met) {
+      ++other;
+      continue;
+    }
+    if (!b.met) continue;
+    const auto at = ray.at(b.lambda);
+    const double mu = std::fabs(dot(at.X, at.slope)) / (norm(at.X) * norm(at.slope));
+    if (mu > 0.1) {
+      EXPECT_NEAR(a.lambda, b.lambda, 2e-3 * radius / mu);
+    }
+  }
+}
+
+TEST(MeshRecord, AMeshSphereInGoedelsUniverse) {
+  Random random(12);
+  int met = 0, other = 0, rays = 0;
+  for (int n = 0; n < (kSanitized ? 60 : 300); ++n) {
+    const double radius = random.logarithmic(1e-3, 0.5);
+    TriangleSoup soup = sphere_soup(24, false, round_as);
+    move_and_scale(soup, {}, radius);
+    const Mesh scaled = make_mesh(std::move(soup));
+    const Goedel metric{random.uniform(0.8, 3)};
+    const Vec3<double> z = random.direction(), x = normalised(cross(random.direction(), z));
+    const RestPlacing<Goedel> placing{
+        metric, random.event(0.8), true, {x, cross(z, x), z}, 1.001 * scaled.ball};
+    Vec4<double> event = random.event(0.8);
+    const Vec3<double> from = spatial(metric.to_origin(placing.place, event));
+    if (norm(from) < 1.5 * radius) continue;
+    rays += 300;
+    compare_with_sphere(placing, event, radius, AnyShape(MeshShape{view_of(scaled)}), random, met, other);
+  }
+  EXPECT_GT(met, rays / 300);
+  EXPECT_LT(other, 1 + met / 100) << "rays between the sphere and the mesh within it";
 }
 
 }  // namespace
