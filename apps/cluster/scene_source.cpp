@@ -43,6 +43,19 @@ void check_scenes(const TraceFrames& frames, int shards) {
   }
 }
 
+void check_meshes(const SceneSource& scene, const Folder& folder) {
+  const json::json_pointer file("/shape/file");
+  for (const json& object : scene.file.document.at("objects")) {
+    if (!object.contains(file)) continue;
+    const std::string name = object.at(file).get<std::string>();
+    std::error_code error;
+    if (!std::filesystem::exists(folder.path() + "/" + name, error))
+      throw InputError(folder.path(),
+                       "lacks the mesh '" + printable(name) +
+                           "': tasks look for it beside the folder's scene; copy it there first");
+  }
+}
+
 void refuse_strangers(const TraceFrames& frames, int threads) {
   const auto missing = missing_pieces(frames, 0, threads, Check::header);
   if (!missing) return;

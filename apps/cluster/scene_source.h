@@ -20,6 +20,9 @@ struct SceneSource {
 /// Throws InputError.
 void check_scenes(const TraceFrames& frames, int shards);
 
+/// Meshes that the scene names must lie in the folder, beside its scene: throws InputError, which names one.
+void check_meshes(const SceneSource& scene, const Folder& folder);
+
 /// Frames of another scene that may not be overwritten: throws InputError, which names one.
 void refuse_strangers(const TraceFrames& frames, int threads);
 

@@ -152,6 +152,7 @@ int submit(const SubmitOptions& options) {
   const Settings& settings = options.settings;
   const TraceFrames frames(scene.file.path, scene.file, folder.data(), settings.frames);
   check_scenes(frames, settings.shards);
+  check_meshes(scene, folder);
   if (options.dry_run) return dry_run(folder, frames, request(folder, scene, settings));
   if (!options.local && !options.scripts_only && !has_slurm())
     throw InputError("sbatch", "is not on PATH; expected Slurm, or --local or --scripts-only");
