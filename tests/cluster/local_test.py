@@ -9,11 +9,10 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 
 from cluster_trouble import fill, small_disk
-from slurm_cluster import Checks, Workplace, kill, waited
+from slurm_cluster import kill, main, waited
 
 HERE = ["--local", "--jobs", "2", "--retry-delay", "0"]
 NO_SLURM = {"PATH": "/nowhere"}
@@ -180,25 +179,5 @@ def locks(place):
     place.whole(folder, "locks", {frame: place.reference()[frame] for frame in range(2)})
 
 
-SCENARIOS = {scenario.__name__: scenario for scenario in [undisturbed, in_parts, kills, stopped, full_disk, hopeless, locks]}
-
-
-def main():
-    tools, source, *names = sys.argv[1:]
-    if unknown := [name for name in names if name not in SCENARIOS]:
-        sys.exit(f"no scenario {unknown[0]}; expected {', '.join(SCENARIOS)}")
-    checks = Checks()
-    place = Workplace(tools, source, checks)
-    try:
-        for name in names or SCENARIOS:
-            begun, faults = time.monotonic(), len(checks.faults)
-            SCENARIOS[name](place)
-            print(f"{name}: {time.monotonic() - begun:.1f} s, {len(checks.faults) - faults} faults", flush=True)
-    finally:
-        place.close()
-    print(f"{checks.count} checks, {len(checks.faults)} faults")
-    sys.exit(bool(checks.faults))
-
-
 if __name__ == "__main__":
-    main()
+    main([undisturbed, in_parts, kills, stopped, full_disk, hopeless, locks])

@@ -209,3 +209,26 @@ class Slurm:
         """What RRR.jobs tell: [(array or finish, its number)]."""
         files = sorted((folder / "cluster").glob("*.jobs"))
         return [tuple(line.split()[:2]) for path in files for line in path.read_text().splitlines()]
+
+
+def main(scenarios, around=contextlib.nullcontext):
+    """Runs the scenarios that the command line names, or all: TOOLS_DIR SOURCE_DIR [SCENARIO...]. Each is called with the
+    workplace, and with what around(workplace) gives where that is not None. Ends the program."""
+    known = {scenario.__name__: scenario for scenario in scenarios}
+    tools, source, *names = sys.argv[1:]
+    if unknown := [name for name in names if name not in known]:
+        sys.exit(f"no scenario {unknown[0]}; expected {', '.join(known)}")
+    checks = Checks()
+    place = Workplace(tools, source, checks)
+    try:
+        place.reference()
+        with around(place) as more:
+            for name in names or known:
+                begun, faults = time.monotonic(), len(checks.faults)
+                known[name](place, *([] if more in (None, place) else [more]))
+                checks.equal(f"{name}: processes that are left", place.processes("/nullcone-trace", place.root), {})
+                print(f"{name}: {time.monotonic() - begun:.1f} s, {len(checks.faults) - faults} faults", flush=True)
+    finally:
+        place.close()
+    print(f"{checks.count} checks, {len(checks.faults)} faults")
+    sys.exit(bool(checks.faults))
