@@ -103,9 +103,6 @@ struct Placing {
   /// Local: it turns about an axis of its own, from these axes at proper time 0.
   Triple spin_axis = {0, 0, 1};
   double spin = 0;  ///< radians a unit of proper time
-
-  /// Whether it stands still among static observers.
-  bool rests() const { return worldline.is_static() && !gyroscope_axes && spin == 0; }
 };
 
 struct Object {

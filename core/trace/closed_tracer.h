@@ -20,7 +20,7 @@ AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape, 
     return Placed<RestPlacing<M>, ChartBody<M>, Shape>{
         {metric, event, false, axes, wide}, {metric, event, axes}, shape};
 
-  if (placing.rests())
+  if (stands_still(placing))
     return Placed<RestPlacing<M>, RestBody, Shape>{{metric, event, true, axes, wide}, {axes}, shape};
 
   // The frame of an object at rest stands in its own chart, at the origin.

@@ -81,7 +81,9 @@ struct Facet {
     const Vec3<S> Y = local(X);
     Vec3<S> out{};
     for (std::size_t k = 0; k < 3; ++k) out = out + (linear[k] + S(2.0) * (square[k] * Y[k])) * rows[k];
-    return normalised(out);
+    const S length =
+        norm(out);  // divided by, so that faces across an axis have just that axis as their normal
+    return Vec3<S>::map([&](std::size_t i) { return out[i] / length; });
   }
 
   template <class T>

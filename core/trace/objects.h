@@ -8,10 +8,15 @@
 
 NULLCONE_KERNEL_BEGIN
 
+/// Among static observers. (A member of Placing would be code that instruction sets share.)
+inline bool stands_still(const Placing& placing) {
+  return placing.worldline.is_static() && !placing.gyroscope_axes && placing.spin == 0;
+}
+
 /// Objects whose worldlines may start at any of their events, for nothing about them changes with time.
 template <class M>
 bool is_timeless(const Placing& placing) {
-  return is_stationary<M>() && placing.rests();
+  return is_stationary<M>() && stands_still(placing);
 }
 
 /// The placing with a timeless worldline starting at the observation's time, so that proper times stay small
