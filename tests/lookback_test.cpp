@@ -135,7 +135,8 @@ TEST(Lookback, CutsRaysAndNothingElse) {
       if (before && metric == std::string("goedel") && !integrated) {  // also on the way there
         const auto k =
             -seen_photon(four_velocity(Vec3<double>{all.scene.observer.velocity}), all.look(c.x, c.y));
-        const auto path = Goedel{1}.path(Vec4<double>{all.scene.observer.event}, k);
+        const Goedel goedel{1};  // its paths point to it
+        const auto path = goedel.path(Vec4<double>{all.scene.observer.event}, k);
         for (int n = 0; n < 400; ++n)
           before &= path.at(c.Z * n / 400).event[0] >= all.scene.observer.event[0] - back;
         again += !before;
