@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/base/json.h"
+#include "tests/test_folder.h"
 
 namespace nullcone {
 namespace {
@@ -18,14 +19,7 @@ namespace fs = std::filesystem;
 
 class Include : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "include.XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    above_ = name;
-    folder_ = name + "/scenes";
-    fs::create_directories(folder_ + "/parts");
-  }
-  void TearDown() override { fs::remove_all(above_); }
+  void SetUp() override { fs::create_directories(folder_ + "/parts"); }
 
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name, std::ios::binary) << text;
@@ -60,7 +54,8 @@ class Include : public testing::Test {
     return shortened(whole(text).origin.told(error, top()).what());
   }
 
-  std::string above_, folder_;
+  const test::TestFolder temporary_;
+  const std::string above_ = temporary_.path(), folder_ = above_ + "/scenes";
 };
 
 TEST_F(Include, AnObjectStandsForTheOneInTheFileAndIsAPatchOverIt) {

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/read_shape.h"
+#include "tests/test_folder.h"
 
 namespace nullcone {
 namespace {
@@ -20,17 +21,9 @@ using nlohmann::json;
 /// A folder of its own, with a scene's name in it.
 class MeshFiles : public testing::Test {
  protected:
-  MeshFiles() {
-    std::string name = (std::filesystem::temp_directory_path() / "nullcone_mesh_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~MeshFiles() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.file(name); }
   std::string scene() const { return path("scene.json"); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   Shape read(const json& shape) const {
     return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene());
   }
@@ -58,7 +51,7 @@ class MeshFiles : public testing::Test {
   }
 
  private:
-  std::string folder_;
+  test::TestFolder folder_;
 };
 
 /// The area of all triangles, and the volume that they enclose; in true lengths.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -17,8 +16,11 @@
 #include "postrender/develop.h"
 #include "postrender/look.h"
 #include "postrender/renderer.h"
+#include "tests/test_folder.h"
 
 namespace nullcone::postrender {
+
+using test::TestFolder;
 
 /// One crossing, with harmless defaults.
 struct TestHit {
@@ -148,35 +150,6 @@ inline nlohmann::json reference_case(const std::string& id) {
   ADD_FAILURE() << "no reference case " << id;
   return {};
 }
-
-/// A folder that goes away with the test.
-class TestFolder {
- public:
-  TestFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "nullcone_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::string path() const { return path_.string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
-  }
-  /// Names of all files.
-  std::vector<std::string> names() const {
-    std::vector<std::string> out;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      out.push_back(entry.path().filename());
-    return out;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline void expect_color(Rgb found, Rgb expected, float tolerance) {
   EXPECT_NEAR(found.r, expected.r, tolerance);

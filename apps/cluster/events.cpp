@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/base/version.h"
 #include "core/record/whole_file.h"
 
 namespace nullcone::cluster {

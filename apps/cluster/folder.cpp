@@ -97,10 +97,4 @@ double now() {
 
 std::string program_folder() { return fs::read_symlink("/proc/self/exe").parent_path().string(); }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  ::gethostname(name.data(), name.size() - 1);
-  return name.data();
-}
-
 }  // namespace nullcone::cluster

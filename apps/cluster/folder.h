@@ -48,6 +48,5 @@ double modified(const std::string& path);
 double now();
 /// The folder and name of the program that runs, for its companions: "…/bin".
 std::string program_folder();
-std::string host_name();
 
 }  // namespace nullcone::cluster

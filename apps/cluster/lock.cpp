@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/version.h"
 #include "core/record/whole_file.h"
 
 namespace nullcone::cluster {

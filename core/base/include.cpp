@@ -166,14 +166,11 @@ class Including {
 
   /// Checks that it may be read.
   File find(const std::string& name, const std::string& place) const {
-    const fs::path path = name;
-    const bool fits = !name.empty() && name.find('\0') == std::string::npos && path.is_relative() &&
-                      std::ranges::find(path, "..") == path.end();
-    if (!fits)
+    if (!stays_below(name))
       refuse(place,
              "expected the name of a file beside this one or below, found '" + printable(name, 80) + "'");
     if (folder_.empty()) refuse(place, "what is read from a pipe cannot include files");
-    const fs::path shown = (fs::path(chain_.back().name).parent_path() / path).lexically_normal();
+    const fs::path shown = (fs::path(chain_.back().name).parent_path() / name).lexically_normal();
     std::error_code error;
     const fs::path real = fs::canonical(shown, error);
     if (error) refuse(place, "cannot open '" + printable(shown.string()) + "'; expected a JSON file");
@@ -239,6 +236,12 @@ InputError JsonOrigin::told(const InputError& error, const std::string& place) c
   }
   return {at.file + beside + ": " + (at.pointer.empty() ? "/" : at.pointer),
           end == what.size() ? "" : what.substr(end + 2)};
+}
+
+bool stays_below(std::string_view path) {
+  const fs::path parts(path);
+  return !path.empty() && path.find('\0') == path.npos && parts.is_relative() &&
+         std::ranges::find(parts, "..") == parts.end();
 }
 
 WholeJson include_files(json document, const std::string& path) {

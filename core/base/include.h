@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "core/base/error.h"
 
@@ -37,6 +38,9 @@ struct WholeJson {
     }
   }
 };
+
+/// Whether a path stays below where it starts: relative, without "..".
+bool stays_below(std::string_view path);
 
 /// Puts in place what `document`, which was read from the file `path`, includes: an object with "include" is
 /// the object in that file, with the other entries put over it as a merge patch (RFC 7386); in a list,

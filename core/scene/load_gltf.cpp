@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/include.h"
 #include "core/base/json.h"
 #include "core/scene/gltf_chunks.h"
 #include "core/scene/gltf_numbers.h"

@@ -4,10 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "core/base/error.h"
 
@@ -40,11 +38,5 @@ std::string MeshFile::read_all() {
 }
 
 void MeshFile::refuse(std::string_view message) const { throw InputError(path_, message); }
-
-bool stays_below(std::string_view path) {
-  const std::filesystem::path parts(path);
-  return !path.empty() && parts.is_relative() && path.find('\0') == std::string_view::npos &&
-         std::ranges::none_of(parts, [](const auto& part) { return part == ".."; });
-}
 
 }  // namespace nullcone

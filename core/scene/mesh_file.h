@@ -33,7 +33,4 @@ class MeshFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-/// Whether a path stays below where it starts: relative, without "..".
-bool stays_below(std::string_view path);
-
 }  // namespace nullcone

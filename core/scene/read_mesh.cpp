@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/include.h"
 #include "core/scene/load_mesh.h"
 #include "core/scene/mesh_file.h"
 #include "core/scene/read_placing.h"

@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +9,6 @@ namespace nullcone {
 namespace {
 
 using nlohmann::json;
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 /// Everything that the numbers of a picture depend on, besides objects, with all defaults resolved. Angles in
 /// radians, as the code has them.

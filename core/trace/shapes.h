@@ -1,4 +1,4 @@
-// Shapes in their own frame: how far a ray may go before it can meet the surface, and texture coordinates.
+// Spheres and boxes in their own frame: how far a ray may go before it can meet the surface.
 #pragma once
 
 #include <numbers>
@@ -132,13 +132,6 @@ struct Box {
     return out;
   }
 
-  template <class S>
-  Vec3<S> normal(const Vec3<S>& X) const {
-    const Face<S> at = face(X);
-    const S none(0.0);
-    return {{at.pick(at.side, none, none), at.pick(none, at.side, none), at.pick(none, none, at.side)}};
-  }
-
   /// The greatest of the distances from the planes of the faces: convex, so that Newton's method ends at the
   /// face through which a ray comes in, or leaves.
   template <class S>
@@ -202,32 +195,10 @@ struct Box {
     return min(S(64.0) * rounding * ray.slope_max / steep, S(2 * bounding_radius()) / ray.slope_max);
   }
 
-  /// Of a rectangle u along x, v along y. Of a box an atlas of its faces in three columns, x, y and z: above
-  /// those on the positive side, below the others. In each cell u runs to the right and v upwards as the face
-  /// is seen from outside, with +z up, or +y on the faces across z; never up to the cell's edge.
-  template <class S>
-  Vec<S, 2> uv(const Vec3<S>& X) const {
-    if (flat()) return {{S(0.5) + S(0.5 / half_x) * X[0], S(0.5) + S(0.5 / half_y) * X[1]}};
-    const auto at = face(plain(X));
-    using P = std::decay_t<decltype(at.side)>;
-    const S x = part(X[0], half_x), y = part(X[1], half_y), z = part(X[2], half_z);
-    const S right = S(at.side) * at.pick(y, S(0.0) - x, x), up = at.pick(z, z, y);
-    const P column = at.pick(P(0.5), P(1.5), P(2.5)), row = P(0.5) + P(0.25) * at.side;
-    return {{S(1.0 / 3) * (S(column) + right), S(row) + S(0.5) * up}};
-  }
-
  private:
   template <class S>
   static S outside(const S& x, double half) {
     return max(abs(x) - S(half), S(0.0));
-  }
-  /// From -1/2 to 1/2 across a face, and a little less: single precision must not reach its edge.
-  template <class S>
-  static S part(const S& x, double half) {
-    const double most = (1 - 1e-6) * half;
-    const auto at = plain(x);
-    using P = std::decay_t<decltype(at)>;
-    return S(0.5 / half) * select(at < P(-most), S(-most), select(at > P(most), S(most), x));
   }
 };
 

@@ -14,6 +14,7 @@
 #include "core/scene/sequence.h"
 #include "postrender/look.h"
 #include "postrender/look_source.h"
+#include "tests/test_folder.h"
 
 namespace {
 
@@ -28,24 +29,18 @@ const std::vector<MetricDescription>& metrics() {
 }
 
 /// A folder with files that a scene may include.
-class Parts {
- public:
-  Parts() {
-    std::string name = (std::filesystem::temp_directory_path() / "json_fuzz.XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) std::abort();
-    folder_ = name;
-    write("top.json", "{}");
-    write("o.json", R"({"name": "a", "shape": {"type": "sphere", "radius": 1}, "x": {"include": "l.json"}})");
-    write("l.json", R"([{"include": "p.json"}, [1, 2], {"include": "p.json", "n": null}])");
-    write("p.json", R"({"n": 1, "m": {"k": [1]}})");
-    write("c.json", R"({"include": "c.json"})");
-  }
-  ~Parts() { std::filesystem::remove_all(folder_); }
-  std::string top() const { return folder_ + "/top.json"; }
+struct Parts {
+  test::TestFolder folder;
 
- private:
-  void write(const std::string& name, const char* text) const { std::ofstream(folder_ + "/" + name) << text; }
-  std::string folder_;
+  Parts() {
+    folder.write("top.json", "{}");
+    folder.write("o.json",
+                 R"({"name": "a", "shape": {"type": "sphere", "radius": 1}, "x": {"include": "l.json"}})");
+    folder.write("l.json", R"([{"include": "p.json"}, [1, 2], {"include": "p.json", "n": null}])");
+    folder.write("p.json", R"({"n": 1, "m": {"k": [1]}})");
+    folder.write("c.json", R"({"include": "c.json"})");
+  }
+  std::string top() const { return folder.file("top.json"); }
 };
 
 void read(char what, const std::string& text) {
