@@ -44,7 +44,7 @@ class Kernel final : public Spacetime {
  public:
   std::string_view isa() const override { return NULLCONE_ISA_NAME; }
   MetricDescription description() const override {
-    MetricDescription out{M::name, {}, skies_of<M>(), HasClosedPaths<M>, is_stationary<M>()};
+    MetricDescription out{M::name, {}, skies_of<M>(), HasClosedPaths<M>, is_stationary<M>(), HasIsometry<M>};
     const M defaults;
     std::apply(
         [&](const auto&... p) {

@@ -11,6 +11,7 @@ namespace nullcone::test {
 struct Traced {
   Scene scene;
   std::vector<TracedBand> bands;
+  std::vector<double> tau_origins = {};  ///< of the objects
 
   /// f(hit, x, y) for every hit, with its pixel.
   template <class F>
@@ -43,6 +44,7 @@ inline Traced trace_text(const std::string& text, int threads = 0) {
   Traced out{read_scene(text, "test", metrics), {}};
   const auto tracer = prepare_scene(find_spacetime(out.scene.metric), out.scene, "test");
   out.bands = trace_exactly(*tracer, out.scene, threads);
+  for (std::size_t i = 0; i < out.scene.objects.size(); ++i) out.tau_origins.push_back(tracer->tau_origin(i));
   return out;
 }
 

@@ -77,6 +77,10 @@ class JsonObject {
   std::vector<double> numbers_or(std::string_view key, const std::vector<double>& fallback,
                                  double least = -kBig, double most = kBig);
 
+  /// A list of lists of exactly `count` such numbers each.
+  std::vector<std::vector<double>> rows(std::string_view key, std::size_t count, double least = -kBig,
+                                        double most = kBig);
+
   /// For the survey: what the entry amounts to.
   void note(std::string_view key, const nlohmann::json& value) const;
 

@@ -195,6 +195,21 @@ std::vector<double> JsonObject::numbers(std::string_view key, std::size_t count,
   return out;
 }
 
+std::vector<std::vector<double>> JsonObject::rows(std::string_view key, std::size_t count, double least,
+                                                  double most) {
+  const json& list = at(key);
+  if (!list.is_array()) refuse(key, std::string("expected a list […], found ") + list.type_name());
+  std::vector<std::vector<double>> out(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = std::string(key) + "/" + std::to_string(i);
+    if (!list[i].is_array() || list[i].size() != count)
+      refuse(place, "expected a list of " + std::to_string(count) + " numbers");
+    for (std::size_t k = 0; k < count; ++k)
+      out[i].push_back(checked(list[i][k], place + "/" + std::to_string(k), least, most));
+  }
+  return out;
+}
+
 std::vector<double> JsonObject::numbers_or(std::string_view key, const std::vector<double>& fallback,
                                            double least, double most) {
   known_.emplace(key);

@@ -44,7 +44,7 @@ Lamp read_lamp(JsonObject lamp, const std::vector<Object>& objects, std::set<std
   read_shape(lamp.object_or_empty("shape"), out);
   if (!out.is_point())
     out.samples = lamp.has("samples") ? static_cast<std::uint32_t>(lamp.integer("samples", 1, 4096)) : 16;
-  if (out.type == ShapeType::quad) read_axes(lamp, out.placing);
+  if (out.type == ShapeType::quad) read_axes(lamp, out.placing, !out.placing.worldline.is_static());
   if (lamp.has("body")) out.body = read_body(lamp, objects);
   lamp.finish();
   return out;

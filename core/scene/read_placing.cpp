@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/scene/read_motion.h"
+
 namespace nullcone {
 
 namespace {
@@ -63,11 +65,10 @@ Worldline read_worldline(JsonObject& object) {
   return out;
 }
 
-void read_axes(JsonObject& object, Placing& placing) {
+void read_axes(JsonObject& object, Placing& placing, bool moves) {
   if (placing.type == PlacingType::local)
     placing.gyroscope_axes =
-        object.word("axes", {"gyroscope", "static"},
-                    placing.worldline.is_static() ? "static" : "gyroscope") == "gyroscope";
+        object.word("axes", {"gyroscope", "static"}, moves ? "gyroscope" : "static") == "gyroscope";
   placing.axes = read_directions(object);
 }
 
@@ -79,20 +80,27 @@ void read_spin(JsonObject& object, Placing& placing) {
   spin.finish();
 }
 
-Placing read_placing(JsonObject placing) {
-  Placing out;
+void read_placing(JsonObject placing, Object& object) {
+  Placing& out = object.placing;
   if (placing.word("type", {"coordinate", "local"}) == "coordinate") {
     out.type = PlacingType::coordinate;
     const auto centre = placing.numbers("centre", 3, -kLargest, kLargest);
     out.worldline.event = {0, centre[0], centre[1], centre[2]};
   } else {
     out.type = PlacingType::local;
-    out.worldline = read_worldline(placing);
+    std::vector<std::string> types = motion_types();
+    types.insert(types.begin(), "static");
+    const std::string type = placing.object("worldline").word("type", types);
+    if (type == "static" || type == "geodesic") {
+      out.worldline = read_worldline(placing);
+    } else {
+      object.motion = std::make_shared<const Motion>(read_motion(placing.object("worldline")));
+      out.worldline.event = object.motion->event;
+    }
     read_spin(placing, out);
   }
-  read_axes(placing, out);
+  read_axes(placing, out, object.motion != nullptr || !out.worldline.is_static());
   placing.finish();
-  return out;
 }
 
 }  // namespace nullcone

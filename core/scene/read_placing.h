@@ -33,13 +33,14 @@ Worldline read_worldline(JsonObject& object);
 /// The entries `z_axis` and `y_axis`, which may be left out: rows x, y, z; y as near to `y_axis` as can be.
 std::array<Triple, 3> read_directions(JsonObject& object);
 
-/// The entries `axes` (of something local), `z_axis` and `y_axis`, which may all be left out.
-void read_axes(JsonObject& object, Placing& placing);
+/// The entries `axes` (of something local), `z_axis` and `y_axis`, which may all be left out; axes of what
+/// moves are gyroscopes, if nothing is said.
+void read_axes(JsonObject& object, Placing& placing, bool moves);
 
 /// The entry `spin` of something local, which may be left out.
 void read_spin(JsonObject& object, Placing& placing);
 
-/// An object's `placing`.
-Placing read_placing(JsonObject placing);
+/// An object's `placing`, and how it moves.
+void read_placing(JsonObject placing, Object& object);
 
 }  // namespace nullcone

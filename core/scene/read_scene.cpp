@@ -46,7 +46,7 @@ Object read_object(JsonObject object, const MetricDescription& metric, std::set<
   Object out;
   out.name = object.name("name", taken);
   out.shape = read_shape(object.object("shape"), metric, place);
-  if (out.shape.type != ShapeType::sky) out.placing = read_placing(object.object("placing"));
+  if (out.shape.type != ShapeType::sky) read_placing(object.object("placing"), out);
   out.opacity = object.number_or("opacity", 1, 0, 1);
   out.transparent = object.boolean("transparent", out.opacity < 1);
   if (out.opacity < 1 && !out.transparent)

@@ -25,6 +25,7 @@ struct MetricDescription {
   int skies = 0;  ///< how many infinities hold a sky
   bool closed_paths = false;
   bool stationary = true;  ///< nothing in it changes with time
+  bool isometric = false;  ///< an isometry carries any event to any other, and is known
 };
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0

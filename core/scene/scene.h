@@ -25,12 +25,14 @@ enum class ObserverFrame {
   normal,  ///< of the observers at right angles to the surfaces of equal chart time: exist in black holes too
 };
 
-/// How an observer moves, from an event on.
+/// How an observer or an object moves, from an event on.
 struct Motion {
   enum class Type {
     geodesic,
-    accelerated,  ///< by a constant acceleration along his own axes
-    circular      ///< round the chart's z axis at a constant rate
+    accelerated,  ///< by a constant acceleration along its own axes
+    circular,     ///< round the chart's z axis at a constant rate
+    piecewise,    ///< one geodesic after the other; the first and the last without end
+    tabulated     ///< through given events, smoothly; only between the first and the last
   };
   /// Circular: with `speed` in the static tetrad, as a geodesic, or so that chart time stands still.
   enum class Pace { speed, free, closed };
@@ -41,6 +43,15 @@ struct Motion {
   Pace pace = Pace::speed;
   double speed = 0;
   bool clockwise = false;
+
+  /// Piecewise: a local velocity in the static tetrad where the piece begins, and how long it takes, in
+  /// proper time.
+  struct Piece {
+    Triple velocity = {0, 0, 0};
+    double duration = 0;
+  };
+  std::vector<Piece> pieces = {};
+  std::vector<Event> events = {};  ///< tabulated
 };
 
 struct Observer {
@@ -105,10 +116,15 @@ struct Placing {
   double spin = 0;  ///< radians a unit of proper time
 };
 
+struct Course;  // core/trace/course.h
+
 struct Object {
   std::string name;
   Shape shape;
   Placing placing;
+  /// Where the worldline is no geodesic: its event stands in the placing, too.
+  std::shared_ptr<const Motion> motion;
+  std::shared_ptr<const Course> course;  ///< made of the motion when the scene is prepared
   double opacity = 1;        ///< channel A
   bool transparent = false;  ///< what stands behind it is recorded too
 };

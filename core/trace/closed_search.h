@@ -3,6 +3,7 @@
 
 #include "core/trace/any_shape.h"
 #include "core/trace/band.h"
+#include "core/trace/course_ray.h"
 #include "core/trace/with_type.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -15,12 +16,12 @@ struct Placed {
   Shape shape;
 };
 template <class M>
-using AnyPlaced =
-    std::variant<Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, AnyShape>,
-                 Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, AnyShape>,
-                 Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
-                 Placed<MovingPlacing<M>, LocalBody<M>, Sphere>,
-                 Placed<MovingPlacing<M>, LocalBody<M>, AnyShape>>;
+using AnyPlaced = std::variant<
+    Placed<RestPlacing<M>, RestBody, Sphere>, Placed<RestPlacing<M>, RestBody, AnyShape>,
+    Placed<RestPlacing<M>, ChartBody<M>, Sphere>, Placed<RestPlacing<M>, ChartBody<M>, AnyShape>,
+    Placed<RestPlacing<M>, LocalBody<M>, Sphere>,  // at rest, but turning like a gyroscope
+    Placed<MovingPlacing<M>, LocalBody<M>, Sphere>, Placed<MovingPlacing<M>, LocalBody<M>, AnyShape>,
+    Placed<CoursePlacing<M>, CourseBody<M>, Sphere>, Placed<CoursePlacing<M>, CourseBody<M>, AnyShape>>;
 
 /// Lists the rays that come near the object's bounding ball at all.
 template <class S, class Placing>

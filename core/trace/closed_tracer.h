@@ -12,8 +12,15 @@ NULLCONE_KERNEL_BEGIN
 /// The shape and placing of an object, resolved to types once. `margin`: how much larger than the shape the
 /// ball is outside of which the search does not look.
 template <Metric M, class Shape>
-AnyPlaced<M> place(const M& metric, const Placing& placing, const Shape& shape, double margin) {
+AnyPlaced<M> place(const M& metric, const Placing& placing, const Course* course, const Shape& shape,
+                   double margin) {
   const double ball = shape.bounding_radius(), wide = margin * ball;
+  if (course != nullptr) {
+    auto [body, parts] = body_on_course(metric, *course, placing, wide);
+    CourseBody<M> seen = body;
+    if (Shape::isotropic) seen.spin.rate = 0;
+    return Placed<CoursePlacing<M>, CourseBody<M>, Shape>{{seen, wide, std::move(parts)}, body, shape};
+  }
   const Vec4<double> event{placing.worldline.event};
   const Matrix3<double> axes = axes_of(placing);
   if (placing.type == PlacingType::coordinate)
@@ -66,8 +73,12 @@ class ClosedTracer final : public Tracer {
       opacities_[i] = object.opacity;
       if (object.shape.type == ShapeType::sky) continue;
       const Placing placing = from_observation<M>(object.placing, observation_[0]);
-      objects_[i] =
-          with_shape(object.shape, [&](const auto& shape) { return place(metric_, placing, shape, margin); });
+      objects_[i] = with_shape(object.shape, [&](const auto& shape) {
+        return place(metric_, placing, object.course.get(), shape, margin);
+      });
+      with_type(objects_[i], [&](const auto& placed) {
+        if constexpr (requires { placed.body.tube; }) clocks_[i] = clock_of(placed.body, observation_[0]);
+      });
       if (!with_type(objects_[i], [&](const auto& placed) { return check(placed, object.shape, unfit); }))
         return false;
     }

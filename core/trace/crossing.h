@@ -77,6 +77,29 @@ S local_time(const Body& body, const Vec4<S>& event, const S& tau) {
   return time_of_zero([&](const D& time) { return body.local(convert<D>(event), time).first; }, tau);
 }
 
+/// Where an event on a ray is in the object's frame, and how fast it moves there.
+template <class S>
+struct Aboard {
+  Vec3<S> X, slope;
+  S tau, tau_slope;
+};
+
+/// Newton's method for the proper time, from a guess, and implicit differentiation.
+template <class Body, class S>
+Aboard<S> aboard(const Body& body, const Vec4<S>& event, const Vec4<S>& tangent, const S& guess) {
+  using D = Dual<S, 2>;  // derivatives along lambda and tau
+  const S tau = local_time(body, event, guess);
+  const auto x = Vec4<D>::map([&](std::size_t i) { return D(event[i], Vec<S, 2>{{tangent[i], S(0.0)}}); });
+  const auto [late, X] = body.local(x, D::variable(tau, 1));
+  Aboard<S> out;
+  out.tau = tau, out.tau_slope = -(late.d[0] / late.d[1]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.X[i] = X[i].v;
+    out.slope[i] = X[i].d[0] + X[i].d[1] * out.tau_slope;
+  }
+  return out;
+}
+
 /// A crossing as the object sees it.
 template <class S>
 struct Meeting {

@@ -1,15 +1,9 @@
 // Observers who move: where one is at a proper time, how fast, and how his axes stand.
 #pragma once
 
-#include "core/trace/spacetime.h"
+#include "core/trace/travel.h"
 
 namespace nullcone {
-
-/// An observer at one of his events, chart components.
-struct Followed {
-  Event event{};
-  std::array<Event, 4> axes{};  ///< his 4-velocity, then his axes: orthonormal
-};
 
 /// The observer of a motion at proper time `tau` since its event, with axes that are Fermi-Walker transported
 /// (on geodesics: parallel) from the boosted axes of the tetrad `frame` there. Relative errors some 1e-13 of

@@ -78,56 +78,69 @@ class IntegratedTracer final : public Tracer {
     const Vec4<double> event{placing.worldline.event};
     const double since = observation_[0] - object.placing.worldline.event[0];
     const M& metric = setting_.system.metric;
+    if (object.course) {
+      const double ball = shape.bounding_radius();
+      auto [body, parts] = body_on_course(metric, *object.course, object.placing, ball);
+      distortions_[number - 1] = distortion_of(body, ball);
+      CourseBody<M> seen = body;
+      if (S::isotropic) seen.spin.rate = 0;
+      return keep(Marched<CourseMap<M>, CourseBody<M>, S>{{seen, ball, std::move(parts)}, body, shape},
+                  object, number, clock_of(body, observation_[0]), unfit);
+    }
     if (object.placing.type == PlacingType::coordinate) {
       const ChartBody<M> body{metric, event, axes_of(object.placing)};
       return keep(Marched<FixedMap, ChartBody<M>, S>{{spatial(event), body.axes, 1}, body, shape}, object,
-                  number, since, unfit);
+                  number, clock_of<M>(object.placing, since), unfit);
     }
-    unfit.reason = "spins; with integrated paths an object must not";
-    if (placing.spin != 0) return false;
     if constexpr (HasIsometry<M>) {
       const LocalBody<M> body = local_body(metric, event, placing, shape.bounding_radius());
-      unfit.reason =
-          "moves, and its rigid frame does not reach far; with integrated paths it must be at rest";
-      if (!object.placing.worldline.is_static() && body.orbit.farthest < kFar) return false;
       const double rate = metric.mean_rate(four_velocity(Vec3<double>{object.placing.worldline.velocity}));
-      return keep(Marched<LocalMap<M>, LocalBody<M>, S>{{body}, body, shape}, object, number, since / rate,
-                  unfit);
+      return keep(Marched<LocalMap<M>, LocalBody<M>, S>{{body}, body, shape}, object, number,
+                  clock_of<M>(object.placing, since / rate), unfit);
     } else {
-      unfit.reason =
-          "moves or turns like a gyroscope; in a spacetime without isometries an object must be at "
-          "rest, with \"axes\": \"static\"";
-      if (!object.placing.worldline.is_static() || object.placing.gyroscope_axes) return false;
       const TangentBody body = tangent_body(metric, event, axes_of(object.placing));
       distortions_[number - 1] = distortion_of(metric, body, shape.bounding_radius());
       const FixedMap map{
           spatial(event), product(body.axes, body.from_chart),
           stretch_of({spatial(body.tetrad.e[1]), spatial(body.tetrad.e[2]), spatial(body.tetrad.e[3])})};
       return keep(Marched<FixedMap, TangentBody, S>{map, body, shape}, object, number,
-                  1 / body.tetrad.e[0][0] * since, unfit);
+                  clock_of<M>(object.placing, 1 / body.tetrad.e[0][0] * since), unfit);
     }
   }
 
   template <class Body, class Map, class S>
-  bool keep(const Marched<Map, Body, S>& marched, const Object& object, std::uint32_t number,
-            double proper_time, Unfit& unfit) {
+  bool keep(Marched<Map, Body, S>&& marched, const Object& object, std::uint32_t number, const Clock& clock,
+            Unfit& unfit) {
     unfit.reason = fault_of(setting_.system.metric, marched.body, marched.shape, object.shape, observation_);
     if (unfit.reason) return false;
     const double ball = marched.shape.bounding_radius();
-    const double far = object.placing.worldline.is_static() ? 1 : 1e12;  // what moves may be met far away
-    for (int n = 0; n < 64; ++n) {  // a little room, for the ball is round only to first order
-      const double distance = norm(spatial(marched.body.event(0.0, ball * golden_point(n, 64))));
-      setting_.reach = std::max(setting_.reach, far * (1.2 * distance + ball));
-      setting_.inside = std::max(std::min(setting_.inside, 0.8 * distance - ball), 0.0);
-    }
     MarchObject<M>& made = objects_[setting_.count++];
-    made = {number, rules_.ends_rays(number), ball, {}, -1, {marched}};
+    made.number = number, made.ends_rays = rules_.ends_rays(number), made.ball = ball;
+    if constexpr (std::is_same_v<Map, CourseMap<M>>) {
+      const Tube& tube = marched.body.tube;
+      made.centre = tube.centre, made.chart_ball = tube.radius;
+      for (std::size_t i = 0; i < tube.count; ++i)
+        keep_rays_for(norm(tube.parts[i].centre) + tube.parts[i].radius,
+                      norm(tube.parts[i].centre) - tube.parts[i].radius);
+    } else {
+      const double far = object.placing.worldline.is_static() ? 1 : 1e12;  // what moves may be met far away
+      for (int n = 0; n < 64; ++n) {  // a little room, for the ball is round only to first order
+        const double distance = norm(spatial(marched.body.event(0.0, ball * golden_point(n, 64))));
+        keep_rays_for(far * (1.2 * distance + ball), 0.8 * distance - ball);
+      }
+    }
     if constexpr (std::is_same_v<Map, FixedMap>) {
       made.centre = marched.map.centre;
       made.chart_ball = marched.map.stretch * ball;
     }
-    clocks_[number - 1] = clock_of<M>(object.placing, proper_time);
+    made.marched = std::move(marched);
+    clocks_[number - 1] = clock;
     return true;
+  }
+  /// Objects lie between these distances from the origin: no ray may escape before it has passed them.
+  void keep_rays_for(double farthest, double nearest) {
+    setting_.reach = std::max(setting_.reach, farthest);
+    setting_.inside = std::max(std::min(setting_.inside, nearest), 0.0);
   }
 
   template <class Stepper>

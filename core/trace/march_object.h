@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/trace/any_shape.h"
-#include "core/trace/curve.h"
+#include "core/trace/course_ray.h"
 #include "core/trace/objects.h"
 #include "core/trace/with_type.h"
 
@@ -34,17 +34,46 @@ struct LocalMap {
 
   template <class S>
   Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
-    using D = Dual<S, 2>;  // derivatives along lambda and tau
-    const S tau = local_time(body, event, body.first_guess(event));
-    const auto x = Vec4<D>::map([&](std::size_t i) { return D(event[i], Vec<S, 2>{{tangent[i], S(0.0)}}); });
-    const auto [late, X] = body.local(x, D::variable(tau, 1));
-    const S tau_slope = -(late.d[0] / late.d[1]);
-    Located<S> out;
-    for (std::size_t i = 0; i < 3; ++i) {
-      out.X[i] = X[i].v;
-      out.slope[i] = X[i].d[0] + X[i].d[1] * tau_slope;
+    const Aboard<S> out = aboard(body, event, tangent, body.first_guess(event));
+    return {out.X, out.slope};
+  }
+};
+
+/// Of objects on courses.
+template <Metric M>
+struct CourseMap {
+  CourseBody<M> body;  ///< of round shapes without their spin: nothing is seen of it
+  double ball;
+  std::unique_ptr<TubePart[]> parts;
+
+  template <class S>
+  Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
+    const Nearby<S> nearby = body.tube.near(event, S(1.0), S(1.0));
+    const Aboard<S> out = aboard(body, event, tangent, nearby.tau);
+    const auto there = (nearby.clearance <= S(0.0)) & (norm(out.X) < S(kFar));
+    return {select(there, out.X, Vec3<S>{{S(kOutOfReach), S(0.0), S(0.0)}}), out.slope};
+  }
+
+  /// Whether a step that runs in a capsule, from time t0 to t1, may meet a part of the tube.
+  template <class S>
+  Mask<S> may_come_near(const Capsule<S>& capsule, const S& t0, const S& t1) const {
+    const Tube& tube = body.tube;
+    const S middle = S(0.5) * (t0 + t1), half = S(0.6) * abs(t1 - t0);
+    Mask<S> out = half < S(0.0);
+    for (std::size_t i = 0; i < tube.count; ++i) {
+      const TubePart& part = tube.parts[i];
+      S late = middle - S(part.t);
+      if (tube.period_t != 0) late = late - S(tube.period_t) * floor(S(1 / tube.period_t) * late + S(0.5));
+      const auto in_time = abs(late) <= S(part.half_t) + half;
+      out = out | (in_time & capsule.touches(convert<S>(part.centre), S(part.radius)));
     }
     return out;
+  }
+
+  /// The ray of a step, from evenly spaced states of it.
+  template <class S, std::size_t n>
+  auto ray(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate, const S& length) const {
+    return CourseRay<S, CourseBody<M>, StepWay<S, n>>{&body, ball, {at, rate, length}};
   }
 };
 
@@ -134,13 +163,17 @@ template <Metric M, bool = HasIsometry<M>>
 struct AnyMarched {
   using Type =
       std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, AnyShape>,
-                   Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, AnyShape>>;
+                   Marched<FixedMap, TangentBody, Sphere>, Marched<FixedMap, TangentBody, AnyShape>,
+                   Marched<CourseMap<M>, CourseBody<M>, Sphere>,
+                   Marched<CourseMap<M>, CourseBody<M>, AnyShape>>;
 };
 template <Metric M>
 struct AnyMarched<M, true> {
   using Type =
       std::variant<Marched<FixedMap, ChartBody<M>, Sphere>, Marched<FixedMap, ChartBody<M>, AnyShape>,
-                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, AnyShape>>;
+                   Marched<LocalMap<M>, LocalBody<M>, Sphere>, Marched<LocalMap<M>, LocalBody<M>, AnyShape>,
+                   Marched<CourseMap<M>, CourseBody<M>, Sphere>,
+                   Marched<CourseMap<M>, CourseBody<M>, AnyShape>>;
 };
 
 template <Metric M>
@@ -148,7 +181,7 @@ struct MarchObject {
   std::uint32_t number = 0;  ///< from 1
   bool ends_rays = true;     ///< no ray goes on behind it
   double ball = 0;           ///< bounding radius in the object's frame
-  /// A ball of chart coordinates that holds the object, where it is fixed in the chart; else negative.
+  /// A ball of chart coordinates that holds the object at all times, if there is one; else negative.
   Vec3<double> centre{};
   double chart_ball = -1;
   typename AnyMarched<M>::Type marched{};
@@ -157,8 +190,13 @@ struct MarchObject {
   template <class S>
   Mask<S> may_come_near(const Capsule<S>& capsule, const Phase<S>& from, const Phase<S>& rate,
                         const Phase<S>& to, const Phase<S>& end_rate, const S& length) const {
-    if (chart_ball >= 0) return capsule.touches(convert<S>(centre), S(chart_ball));
-    return with_type(marched, [&](const auto& object) {
+    const Mask<S> near = capsule.touches(convert<S>(centre), S(chart_ball));
+    if (chart_ball >= 0 && !any(near)) return near;
+    return with_type(marched, [&](const auto& object) -> Mask<S> {
+      using Map = std::decay_t<decltype(object.map)>;
+      if constexpr (std::is_same_v<Map, FixedMap>) return near;
+      if constexpr (std::is_same_v<Map, CourseMap<M>>)
+        return near & object.map.may_come_near(capsule, from.x[0], to.x[0]);
       const Located<S> a = object.map.locate(from.x, rate.x), b = object.map.locate(to.x, end_rate.x);
       return Capsule<S>(a.X, a.slope, b.X, b.slope, length).touches(Vec3<S>{}, S(ball));
     });
@@ -174,11 +212,12 @@ struct MarchObject {
         marched, [&](const auto& object) { return object.shape.holds(object.map.locate(event, tangent).X); });
   }
 
-  /// f(curve, shape), from evenly spaced states of a step.
+  /// f(curve, shape), from evenly spaced states of a step; a curve is what `advance` walks along.
   template <class S, std::size_t n, class F>
   decltype(auto) with_curve(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
                             const S& length, F&& f) const {
     return with_type(marched, [&](const auto& object) {
+      if constexpr (requires { object.map.parts; }) return f(object.map.ray(at, rate, length), object.shape);
       std::array<Vec3<S>, n> X, slope;
       for (std::size_t k = 0; k < n; ++k) {
         const Located<S> here = object.map.locate(at[k].x, rate[k].x);

@@ -3,7 +3,7 @@
 
 #include "core/scene/scene.h"
 #include "core/trace/any_shape.h"
-#include "core/trace/crossing.h"
+#include "core/trace/course_ray.h"
 #include "core/trace/spacetime.h"
 
 NULLCONE_KERNEL_BEGIN
@@ -37,6 +37,13 @@ Clock clock_of(const Placing& placing, double at_observation) {
   return {at_observation, is_timeless<M>(placing) ? 0 : at_observation};
 }
 
+/// The same of an object on a course: its proper time is 0 at an event that may be far from the observation.
+template <Metric M>
+Clock clock_of(const CourseBody<M>& body, double observation) {
+  const double now = proper_time_at(body, observation);
+  return {now, now};
+}
+
 /// Whether every point of the bounding sphere can move with the object: its 4-velocity must be timelike.
 template <Metric M, class Body>
 bool moves_timelike(const M& metric, const Body& body, double ball) {
@@ -50,14 +57,28 @@ bool moves_timelike(const M& metric, const Body& body, double ball) {
   return true;
 }
 
+template <Metric M>
+bool moves_timelike(const M&, const CourseBody<M>& body, double ball) {
+  return moves_timelike(body, ball);
+}
+
+/// Where an event is in the object's frame; far away where that does not reach.
+template <class Body>
+Vec3<double> position_of(const Body& body, const Vec4<double>& event) {
+  if constexpr (requires { body.tube; })
+    if (body.tube.near(event, 1.0, 1.0).clearance > 0) return {{kOutOfReach, 0, 0}};
+  const double tau = local_time(body, event, body.first_guess(event));
+  const Vec3<double> out = body.local(event, tau).second;
+  return norm(out) < kFar ? out : Vec3<double>{{kOutOfReach, 0, 0}};
+}
+
 /// Why an object cannot be traced for an observer at an event of the object's chart; nothing if it can.
 template <Metric M, class Body, class S>
 const char* fault_of(const M& metric, const Body& body, const S& shape, const Shape& described,
                      const Vec4<double>& observer) {
   if (!moves_timelike(metric, body, shape.bounding_radius()))
     return "is too large: parts of it would have to move faster than light";
-  const double tau = local_time(body, observer, body.first_guess(observer));
-  if (!shape.hides(body.local(observer, tau).second)) return nullptr;
+  if (!shape.hides(position_of(body, observer))) return nullptr;
   if constexpr (requires { shape.is_open(); })
     if (shape.is_open()) return "holds the observer in its surface";
   return described.dome ? "is a dome, but the observer stands outside it"
@@ -67,8 +88,7 @@ const char* fault_of(const M& metric, const Body& body, const S& shape, const Sh
 /// Whether an event, in the chart of the body, is inside of a shape that is seen from outside.
 template <class Body, class S>
 bool holds_event(const Body& body, const S& shape, const Vec4<double>& event) {
-  const double tau = local_time(body, event, body.first_guess(event));
-  return !shape.starts_inside() && shape.holds(body.local(event, tau).second);
+  return !shape.starts_inside() && shape.holds(position_of(body, event));
 }
 
 template <class Object>

@@ -7,6 +7,8 @@ NULLCONE_KERNEL_BEGIN
 
 /// Stands for "as far as you like": a step this long ends the search.
 inline constexpr double kFar = 1e300;
+/// Stands for a place that nothing reaches; its square is finite.
+inline constexpr double kOutOfReach = 1e100;
 
 /// The ray at one affine parameter, seen from an object: position X and slope dX/dlambda in the object's
 /// frame, and bounds that hold for the next `valid` of lambda. Where the object is far away, only `clearance`

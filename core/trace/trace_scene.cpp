@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/record/memory.h"
+#include "core/trace/course.h"
 #include "core/trace/follow.h"
 #include "core/trace/gather.h"
 
@@ -141,6 +142,7 @@ std::unique_ptr<Tracer> prepare_scene(const Spacetime& spacetime, Scene& scene, 
   const std::vector<double> parameters = parameters_of(spacetime, scene);
   settle_observer(spacetime, parameters, scene, place);
   if (scene.max_lookback == 0) scene.max_lookback = spacetime.default_lookback(parameters);
+  settle_objects(spacetime, parameters, scene, place);
   Scene sampled = scene;
   sampled.camera = sample_camera(scene.camera);
   if (spacetime.description().stationary) count_from_observation(sampled);

@@ -109,6 +109,23 @@ SCENES = {
         "max_lookback": {"lambda": 20},
         "objects": [BALL],
     },
+    "travellers": {
+        "metric": {"name": "minkowski"},
+        "observer": {"worldline": {"type": "tabulated", "events": [[0, 0, 0, 0], [2, 1, 0, 0], [4, 1, 1, 0]]}, "proper_time": 1},
+        "camera": {"type": "perspective", "fov_deg": 60, "resolution": [64, 48]},
+        "objects": [
+            {"name": "rocket", "shape": {"type": "sphere", "radius": 0.5},
+             "placing": {"type": "local", "axes": "gyroscope", "spin": {"rate_deg": 20},
+                         "worldline": {"type": "accelerated", "event": [0, 20, 0, 3], "velocity": [0.5, 0, 0.25], "acceleration": [0, 0.5, 0]}}},
+            {"name": "moon", "shape": {"type": "sphere", "radius": 0.5},
+             "placing": {"type": "local", "worldline": {"type": "circular", "event": [0, 9, 0, 0], "speed": 0.5, "clockwise": True}, "axes": "static"}},
+            {"name": "twin", "shape": {"type": "sphere", "radius": 0.5},
+             "placing": {"type": "local", "worldline": {"type": "piecewise", "event": [0, 0, 30, 0], "pieces": [
+                 {"velocity": [0.5, 0, 0], "duration": 4}, {"duration": 2}, {"velocity": [-0.5, 0, 0], "duration": 4}]}}},
+            {"name": "train", "shape": {"type": "sphere", "radius": 0.5},
+             "placing": {"type": "local", "worldline": {"type": "tabulated", "events": [[-50, 0, 0, 40], [0, 1, 0, 40], [50, 2, 1, 40]]}}},
+        ],
+    },
     "journey": {
         "frames": {"count": 2, "from": 0, "to": 1, "time": "proper"},
         "metric": {"name": "minkowski"},

@@ -1,0 +1,146 @@
+// The world tube of an object on a course: where in the chart it is, and when.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include "core/trace/course_body.h"
+
+NULLCONE_KERNEL_BEGIN
+
+/// From one proper time to another: what a part of the tube must hold is looked up at some points of the
+/// object's bounding ball, and a little is added for what lies between them.
+template <Metric M>
+TubePart tube_part(const CourseBody<M>& body, double ball, double from, double until) {
+  constexpr int kTimes = 7, kPoints = 32;
+  constexpr double kRoom = 1.1;
+  std::array<Vec4<double>, kTimes*(kPoints + 1)> events;
+  Vec4<double> least{{kFar, kFar, kFar, kFar}}, most = -least;
+  for (int i = 0; i < kTimes; ++i)
+    for (int n = 0; n <= kPoints; ++n) {
+      const Vec3<double> X = n < kPoints ? ball * golden_point(n, kPoints) : Vec3<double>{};
+      const Vec4<double> x = body.event(from + (until - from) * i / (kTimes - 1), X);
+      for (std::size_t c = 0; c < 4; ++c) least[c] = min(least[c], x[c]), most[c] = max(most[c], x[c]);
+      events[static_cast<std::size_t>(i * (kPoints + 1) + n)] = x;
+    }
+  const Vec4<double> middle = 0.5 * (least + most);
+  TubePart out{spatial(middle),     0, middle[0], kRoom * (most[0] - middle[0]), 0.5 * (from + until),
+               0.5 * (until - from)};
+  for (const Vec4<double>& x : events) out.radius = max(out.radius, norm(spatial(x) - out.centre));
+  out.radius = kRoom * out.radius + 1e-12 * norm(out.centre);
+  const double t0 = body.event(from, Vec3<double>{})[0], t1 = body.event(until, Vec3<double>{})[0];
+  const double per_t = (until - from) / (t1 - t0);
+  if (t1 != t0 && std::isfinite(per_t)) out.per_t = per_t;
+  return out;
+}
+
+/// A tube and the list of its parts.
+struct TubeRoom {
+  std::unique_ptr<TubePart[]> parts;
+  Tube tube;
+};
+
+template <Metric M>
+TubeRoom make_tube(const CourseBody<M>& body, double ball) {
+  const CourseView& line = body.line;
+  const Course& course = line.course();
+  TubeRoom out;
+  Tube& tube = out.tube;
+  tube.count = line.count();
+  const double turning = std::fabs(course.turning), around = 2 * std::numbers::pi / turning;
+  if (line.is_circle()) tube.count = 1;
+  if (turning > 0) {
+    tube.count = static_cast<std::size_t>(std::clamp(std::ceil(2.5 * around / course.pace), 8.0, 256.0));
+    tube.period_tau = around, tube.period_t = around * course.time_rate;
+  }
+  out.parts.reset(new TubePart[tube.count]);
+  for (std::size_t i = 0; i < tube.count; ++i) {
+    TubePart& part = out.parts[i];
+    if (!line.is_circle()) {
+      part = tube_part(body, ball, line.legs()[i].from, line.legs()[i].until);
+    } else if (turning > 0) {
+      const double length = around / static_cast<double>(tube.count), from = length * static_cast<double>(i);
+      part = tube_part(body, ball, from, from + length);
+    } else {  // it rests
+      part = tube_part(body, ball, 0.0, 0.0);
+      part.half_t = part.half_tau = kFar, part.per_t = 1 / course.time_rate;
+    }
+  }
+  tube.parts = out.parts.get();
+  Vec3<double> least{{kFar, kFar, kFar}}, most = -least;
+  for (std::size_t i = 0; i < tube.count; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      least[c] = min(least[c], tube.parts[i].centre[c]);
+      most[c] = max(most[c], tube.parts[i].centre[c]);
+    }
+  tube.centre = 0.5 * (least + most);
+  for (std::size_t i = 0; i < tube.count; ++i)
+    tube.radius = max(tube.radius, norm(tube.parts[i].centre - tube.centre) + tube.parts[i].radius);
+  return out;
+}
+
+/// The body of an object on a course, whose event stands at the time `begin`; it has no tube yet.
+template <Metric M>
+CourseBody<M> course_body(const M& metric, const Course& course, const Placing& placing) {
+  const CourseView line(course, placing.worldline.event[0]);
+  const Matrix3<double> axes = {Vec3<double>{placing.axes[0]}, Vec3<double>{placing.axes[1]},
+                                Vec3<double>{placing.axes[2]}};
+  return {metric, line, axes, line.turn(), {placing.spin_axis, placing.spin}};
+}
+
+/// The proper time of an object at about a chart time.
+template <Metric M>
+double proper_time_at(const CourseBody<M>& body, double t) {
+  const Course& course = body.line.course();
+  if (body.line.is_circle()) return course.time_rate == 0 ? 0 : (t - body.line.begin()) / course.time_rate;
+  const TubePart* nearest = body.tube.parts;
+  for (std::size_t i = 1; i < body.tube.count; ++i)
+    if (std::fabs(body.tube.parts[i].t - t) < std::fabs(nearest->t - t)) nearest = body.tube.parts + i;
+  return nearest->tau;
+}
+
+/// A body with its tube, and the room of that.
+template <Metric M>
+std::pair<CourseBody<M>, std::unique_ptr<TubePart[]>> body_on_course(const M& metric, const Course& course,
+                                                                     const Placing& placing, double ball) {
+  CourseBody<M> body = course_body(metric, course, placing);
+  TubeRoom room = make_tube(body, ball);
+  body.tube = room.tube;
+  return {body, std::move(room.parts)};
+}
+
+/// Whether everywhere on its way every point of the bounding sphere can move with the object.
+template <Metric M>
+bool moves_timelike(const CourseBody<M>& body, double ball) {
+  using D = Dual<double, 1>;
+  for (std::size_t i = 0; i < body.tube.count; ++i)
+    for (int n = 0; n < 32; ++n) {
+      const double tau = body.tube.parts[i].tau;
+      const Vec4<D> x = body.event(D::variable(tau, 0), convert<D>(ball * golden_point(n, 32)));
+      const auto event = Vec4<double>::map([&](std::size_t c) { return x[c].v; });
+      const auto u = Vec4<double>::map([&](std::size_t c) { return x[c].d[0]; });
+      if (!(inner(body.metric.g(event), u, u) > 0)) return false;
+    }
+  return true;
+}
+
+/// The largest relative error of lengths within the object: where there is an isometry, none.
+template <Metric M>
+double distortion_of(const CourseBody<M>& body, double ball) {
+  double worst = 0;
+  if constexpr (!HasIsometry<M>)
+    for (std::size_t part = 0; part < body.tube.count; ++part) {
+      const double tau = body.tube.parts[part].tau;
+      const auto axes = body.line.at(tau).axes;
+      for (int n = 0; n < 32; ++n) {
+        const Matrix4<double> g = body.metric.g(body.event(tau, ball * golden_point(n, 32)));
+        for (std::size_t i = 1; i < 4; ++i)
+          for (std::size_t j = 1; j <= i; ++j)
+            worst = max(worst, std::fabs(inner(g, axes[i], axes[j]) + (i == j ? 1 : 0)));
+      }
+    }
+  return 0.5 * worst;  // lengths are roots
+}
+
+NULLCONE_KERNEL_END

@@ -1,0 +1,458 @@
+// Objects on worldlines: in flat spacetime against closed forms, ray by ray; elsewhere against other ways to
+// the same motion.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/base/boost.h"
+#include "core/base/error.h"
+#include "core/trace/follow.h"
+#include "core/trace/shapes.h"
+#include "tests/random_rays.h"
+#include "tests/same_picture.h"
+
+namespace nullcone::test {
+namespace {
+
+using namespace host;
+using L = long double;
+
+constexpr double kPi = std::numbers::pi;
+
+/// Somebody on a worldline of flat spacetime, in closed form: event, 4-velocity and gyroscope axes.
+struct Known {
+  Vec4<L> P, u;
+  std::array<Vec4<L>, 3> axes;
+};
+using KnownLine = std::function<Known(L tau)>;
+
+std::array<Vec4<L>, 3> boosted_axes(const Vec4<L>& u) {
+  std::array<Vec4<L>, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Vec4<L> e{};
+    e[i + 1] = 1;
+    out[i] = boost(opposite(u), e);
+  }
+  return out;
+}
+L product(const Vec4<L>& a, const Vec4<L>& b) { return a[0] * b[0] - dot(spatial(a), spatial(b)); }
+
+/// A sphere as a ray sees it: the proper time at which an event is simultaneous with its centre, and where.
+struct Seen {
+  L tau;
+  Vec3<L> X;
+};
+Seen seen(const KnownLine& line, const Vec4<L>& x, L tau) {
+  for (int i = 0; i < 60; ++i) {
+    const Known at = line(tau);
+    const L h = 1e-6L, late = product(at.u, x - at.P);
+    const Known next = line(tau + h), last = line(tau - h);
+    const L slope = (product(next.u, x - next.P) - product(last.u, x - last.P)) / (2 * h);
+    const L step = late / slope;
+    tau -= step;
+    if (std::fabs(step) < 1e-18L * (1 + std::fabs(tau))) break;
+  }
+  const Known at = line(tau);
+  Seen out{tau, {}};
+  for (std::size_t i = 0; i < 3; ++i) out.X[i] = -product(at.axes[i], x - at.P);
+  return out;
+}
+
+/// When light that reaches `o` left the centre.
+L retarded(const KnownLine& line, const Vec4<L>& o, L least, L most) {
+  for (int i = 0; i < 200; ++i) {
+    const L middle = (least + most) / 2;
+    const Vec4<L> way = o - line(middle).P;
+    (way[0] > norm(spatial(way)) ? least : most) = middle;
+  }
+  return least;
+}
+
+struct Moving {
+  std::string json;
+  KnownLine line;
+  std::vector<L> kinks;
+  L least = -60, most = 60;  ///< proper time
+};
+
+Moving on_circle(double r, double v, double z, bool clockwise) {
+  const L gamma = 1 / std::sqrt((1 - L(v)) * (1 + L(v))), way = clockwise ? -1 : 1, w = way * gamma * v / r;
+  const auto line = [=](L tau) {
+    const L c = std::cos(w * tau), s = std::sin(w * tau);
+    Known out{{{gamma * tau, r * c, r * s, z}}, {{gamma, -w * r * s, w * r * c, 0}}, {}};
+    const auto b = boosted_axes(out.u);  // gyroscopes turn against these by -(gamma - 1) phi
+    const L turn = -(gamma - 1) * w * tau;
+    out.axes = {std::cos(turn) * b[0] + std::sin(turn) * b[1], std::cos(turn) * b[1] - std::sin(turn) * b[0],
+                b[2]};
+    return out;
+  };
+  return {R"({"type": "circular", "event": [0, )" + std::to_string(r) + ", 0, " + std::to_string(z) +
+              R"(], "speed": )" + std::to_string(v) + R"(, "clockwise": )" + (clockwise ? "true" : "false") +
+              "}",
+          line,
+          {},
+          -400,
+          400};
+}
+
+Moving on_hyperbola(const Vec3<double>& start, double a, const Vec3<double>& n) {
+  const auto line = [=](L tau) {
+    const L s = std::sinh(a * tau), c = std::cosh(a * tau), half = std::sinh(a * tau / 2),
+            c1 = 2 * half * half;
+    Known out;
+    out.P[0] = s / a, out.u[0] = c;
+    for (std::size_t i = 0; i < 3; ++i) out.P[i + 1] = start[i] + n[i] * c1 / a, out.u[i + 1] = n[i] * s;
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.axes[i][0] = n[i] * s;
+      for (std::size_t k = 0; k < 3; ++k) out.axes[i][k + 1] = (i == k ? 1 : 0) + n[i] * n[k] * c1;
+    }
+    return out;
+  };
+  const Vec3<double> push = a * n;
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      R"({"type": "accelerated", "event": [0, %.17g, %.17g, %.17g], "acceleration": [%.17g, %.17g, %.17g]})",
+      start[0], start[1], start[2], push[0], push[1], push[2]);
+  return {text, line, {}, -25 / L(a), 25 / L(a)};
+}
+
+Moving in_pieces(const Vec3<double>& start, const std::vector<std::pair<Vec3<double>, double>>& pieces) {
+  std::vector<Known> begins;
+  Vec4<L> P = {{0, start[0], start[1], start[2]}};
+  std::string json;
+  std::array<Vec4<L>, 3> axes{};
+  for (const auto& [velocity, duration] : pieces) {
+    const Vec4<L> u = four_velocity(convert<L>(velocity));
+    if (begins.empty())
+      axes = boosted_axes(u);
+    else
+      for (auto& e : axes) {
+        const Vec4<L> was = begins.back().u;
+        e = e - (product(e, u) / (1 + product(u, was))) * (u + was);
+      }
+    begins.push_back({P, u, axes});
+    P = P + L(duration) * u;
+    char text[256];
+    std::snprintf(text, sizeof text, R"(%s{"velocity": [%.17g, %.17g, %.17g], "duration": %.17g})",
+                  json.empty() ? "" : ", ", velocity[0], velocity[1], velocity[2], duration);
+    json += text;
+  }
+  std::vector<L> from;
+  L sum = 0;
+  for (const auto& piece : pieces) from.push_back(sum), sum += piece.second;
+  const auto line = [=](L tau) {
+    std::size_t i = 0;
+    while (i + 1 < from.size() && tau > from[i + 1]) ++i;
+    Known out = begins[i];
+    out.P = out.P + (tau - from[i]) * out.u;
+    return out;
+  };
+  char text[128];
+  std::snprintf(text, sizeof text, R"({"type": "piecewise", "event": [0, %.17g, %.17g, %.17g], "pieces": [)",
+                start[0], start[1], start[2]);
+  return {text + json + "]}", line, {from.begin() + 1, from.end()}, -60, 60};
+}
+
+struct Figures {
+  double Z = 0, tau = 0, shift = 0, mu = 0, uv = 0;
+  std::size_t hits = 0, missed = 0, ghosts = 0, skipped = 0;
+};
+
+/// Traces a sphere that moves, from an observer at rest who looks at it, and compares every ray.
+void compare(const Moving& moving, double radius, const Vec4<double>& at, Figures& worst) {
+  const Vec4<L> o = convert<L>(at);
+  const L tau_r = retarded(moving.line, o, moving.least, moving.most);
+  const Vec4<L> way = o - moving.line(tau_r).P;
+  const double distance = static_cast<double>(norm(spatial(way)));
+  if (distance < 3 * radius) return;
+  char head[512];
+  std::snprintf(head, sizeof head,
+                R"({"metric": {"name": "minkowski"}, "observer": {"event": [%.17g, %.17g, %.17g, %.17g]},
+                "camera": {"type": "perspective", "fov_deg": %.17g, "resolution": [40, 40], "forward": [%.17g, %.17g, %.17g], "up": [0.1, 0.2, 1]},)",
+                at[0], at[1], at[2], at[3], std::min(120.0, 120 / kPi * 3 * radius / distance),
+                -static_cast<double>(way[1]), -static_cast<double>(way[2]), -static_cast<double>(way[3]));
+  const Traced traced =
+      trace_text(head +
+                 (R"("objects": [{"name": "ball", "shape": {"type": "sphere", "radius": )" +
+                  std::to_string(radius) + R"(}, "placing": {"type": "local", "worldline": )") +
+                 moving.json + "}}]}");
+  std::map<std::pair<std::size_t, std::size_t>, HitRecord> hits;
+  traced.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) { hits[{x, y}] = hit; });
+  EXPECT_EQ(traced.rays_with(Status::step_limit) + traced.rays_with(Status::not_finite), 0U);
+  const L R = radius;
+  for (std::size_t y = 0; y < 40; ++y)
+    for (std::size_t x = 0; x < 40; ++x) {
+      const Vec4<L> k = {{-1, traced.look(x, y)[0], traced.look(x, y)[1], traced.look(x, y)[2]}};
+      const auto X_at = [&](L lambda, L guess) { return seen(moving.line, o + lambda * k, guess); };
+      // Where it is next to the centre: both move, so look at the distances along the ray.
+      L best = kFar, best_lambda = 0, tau = tau_r;
+      for (int i = -150; i <= 150; ++i) {
+        const L lambda = L(distance) + L(0.1) * i * R;
+        const Seen here = X_at(lambda, tau);
+        const L d = norm(here.X);
+        if (d < best) best = d, best_lambda = lambda, tau = here.tau;
+      }
+      for (L step = L(0.1) * R; step > 1e-12L * R; step *= L(0.5))
+        for (const L lambda : {best_lambda - step, best_lambda + step})
+          if (const L d = norm(X_at(lambda, tau).X); d < best) best = d, best_lambda = lambda;
+      const bool kinked =
+          std::ranges::any_of(moving.kinks, [&](L kink) { return std::fabs(tau - kink) < 12 * R; });
+      const auto found = hits.find({x, y});
+      if (kinked || std::fabs(best - R) < 1e-4L * R) {
+        ++worst.skipped;
+        continue;
+      }
+      worst.missed += best < R && found == hits.end();
+      worst.ghosts += best > R && found != hits.end();
+      if (best > R || found == hits.end()) continue;
+      ++worst.hits;
+      L in = best_lambda - 40 * R, out = best_lambda;
+      for (int i = 0; i < 200; ++i) {
+        const L middle = (in + out) / 2;
+        (norm(X_at(middle, tau).X) > R ? in : out) = middle;
+      }
+      const HitRecord& hit = found->second;
+      const Seen here = X_at(in, tau);
+      const Known then = moving.line(here.tau);
+      const L frequency = -product(then.u, k);
+      Vec3<L> K;
+      for (std::size_t i = 0; i < 3; ++i) K[i] = -product(then.axes[i], k) / frequency;
+      const double mu = static_cast<double>(-dot(K, here.X) / norm(here.X));
+      const double scale = distance + std::fabs(at[0]) + 10;
+      const auto note = [](double& worst_of, double error) {
+        worst_of = std::max(worst_of, std::fabs(error));
+      };
+      note(worst.Z, (hit.Z - static_cast<double>(in)) * mu / scale);
+      note(worst.tau, (hit.tau + traced.tau_origins[0] - static_cast<double>(here.tau)) * mu / scale);
+      note(worst.shift, hit.shift * static_cast<double>(frequency) - 1);
+      note(worst.mu, (std::fabs(hit.mu) - std::fabs(mu)) * mu);
+      const auto uv =
+          Sphere::uv(Vec3<double>::map([&](std::size_t i) { return static_cast<double>(here.X[i]); }));
+      const double du = std::fabs(hit.u - uv[0]), pole = std::sin(kPi * uv[1]);
+      note(worst.uv, std::min(du, 1 - du) * mu * pole);
+      note(worst.uv, (hit.v - uv[1]) * mu * pole);
+    }
+}
+
+void report(const char* what, const Figures& worst, double limit, double radius) {
+  std::printf("%s: %zu hits, worst Z %.1e, tau %.1e, shift %.1e, mu %.1e, uv %.1e; %zu skipped\n", what,
+              worst.hits, worst.Z, worst.tau, worst.shift, worst.mu, worst.uv, worst.skipped);
+  EXPECT_EQ(worst.missed, 0U);
+  EXPECT_EQ(worst.ghosts, 0U);
+  EXPECT_GT(worst.hits, kSanitized ? 200U : 2000U);
+  EXPECT_LT(worst.Z, limit);
+  EXPECT_LT(worst.tau, limit);
+  EXPECT_LT(worst.shift, limit / radius);
+  EXPECT_LT(worst.mu, limit / radius);
+  EXPECT_LT(worst.uv, limit / radius);
+}
+
+constexpr int kScenes = kSanitized ? 2 : 12;
+
+TEST(Worldlines, CirclesInFlatSpace) {
+  Random random(1);
+  Figures worst;
+  for (int i = 0; i < kScenes; ++i) {
+    const double r = random.uniform(1, 5), v = random.uniform(0.1, 0.9);
+    compare(on_circle(r, v, random.uniform(-1, 1), i % 2 == 1), 0.1, {{random.uniform(-20, 20), 9, 3, 2}},
+            worst);
+  }
+  report("circles", worst, 1e-12, 0.1);
+}
+
+TEST(Worldlines, HyperbolasInFlatSpace) {
+  Random random(2);
+  Figures worst;
+  for (int i = 0; i < kScenes; ++i) {
+    const double a = random.uniform(0.05, 1);
+    compare(on_hyperbola({{1, 2, 3}}, a, random.direction()), 0.1, {{random.uniform(2, 8), 2, -1, 1}}, worst);
+  }
+  report("hyperbolas", worst, 1e-12, 0.1);
+}
+
+TEST(Worldlines, PiecesInFlatSpace) {
+  Random random(3);
+  Figures worst;
+  for (int i = 0; i < kScenes; ++i) {
+    std::vector<std::pair<Vec3<double>, double>> pieces;
+    for (int k = 0; k < 4; ++k)
+      pieces.emplace_back(random.uniform(0, 0.9) * random.direction(), random.uniform(1, 4));
+    compare(in_pieces({{1, 2, 3}}, pieces), 0.05, {{random.uniform(0, 30), 12, -1, 1}}, worst);
+  }
+  report("pieces", worst, 1e-12, 0.05);
+}
+
+/// A scene with an object whose placing has this worldline, and what else.
+std::string with_ball(const std::string& metric, const std::string& more, const std::string& shape,
+                      const std::string& worldline, const std::string& placing = "") {
+  return R"({"metric": {"name": )" + metric + R"(}, "camera": {"type": "sphere", "resolution": )" +
+         pixels(240, 120) + "}, " + more + R"(, "objects": [{"name": "ball", "shape": )" + shape +
+         R"(, "placing": {"type": "local", "worldline": )" + worldline + placing + "}}]}";
+}
+const std::string kBall = R"({"type": "sphere", "radius": 0.2})",
+                  kBox = R"({"type": "box", "edges": [0.3, 0.2, 0.25]})";
+
+/// Otherwise the same scene with the first worldline and the second.
+void expect_same_way(const std::string& metric, const std::string& more, const std::string& first,
+                     const std::string& second, double limit, const std::string& placing = "") {
+  for (const std::string& shape : {kBall, kBox})
+    expect_same_picture(with_ball(metric, more, shape, first, placing),
+                        with_ball(metric, more, shape, second, placing), limit, 5);
+}
+
+const std::string kNear = R"("observer": {"event": [0.3, 0.5, 0.4, 0.3]})";
+
+TEST(Worldlines, OnePieceIsAGeodesic) {
+  const std::string event = R"("event": [-2, 1.4, 0.3, 0.1])", velocity = R"("velocity": [0.2, -0.5, 0.1])";
+  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
+    expect_same_way(
+        metric, kNear, R"({"type": "geodesic", )" + event + ", " + velocity + "}",
+        R"({"type": "piecewise", )" + event + R"(, "pieces": [{)" + velocity + R"(, "duration": 3}]})", 1e-8);
+}
+
+TEST(Worldlines, AccelerationByNothingIsAGeodesic) {
+  const std::string rest = R"("event": [-2, 1.4, 0.3, 0.1], "velocity": [0.2, -0.5, 0.1])";
+  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
+    expect_same_way(metric, kNear, R"({"type": "geodesic", )" + rest + "}",
+                    R"({"type": "accelerated", "acceleration": [0, 0, 0], )" + rest + "}", 1e-8);
+}
+
+std::string text_of_event(const Event& x) {
+  char text[128];
+  std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g, %.17g]", x[0], x[1], x[2], x[3]);
+  return text;
+}
+
+TEST(Worldlines, FreeCirclesAreGeodesics) {
+  struct Case {
+    std::string metric, name;
+    std::vector<double> parameters;
+    Motion motion;
+    std::string more;
+  };
+  const std::vector<Case> cases = {
+      {R"("goedel", "a": 3)",
+       "goedel",
+       {3},
+       {Motion::Type::circular, {-2, 1.4, 0, 0.1}, {}, {}, Motion::Pace::free, 0, false},
+       kNear},
+      {R"("goedel", "a": 3)",
+       "goedel",
+       {3},
+       {Motion::Type::circular, {-2, 1.4, 0, 0.1}, {}, {}, Motion::Pace::free, 0, true},
+       kNear},
+      {R"("kerr_schild", "spin": 0.7)",
+       "kerr_schild",
+       {1, 0.7, 0},
+       {Motion::Type::circular, {-30, 8, 0, 0}, {}, {}, Motion::Pace::free, 0, false},
+       R"("observer": {"event": [0, 11, 2, 2]}, "accuracy": "reference")"}};
+  for (const Case& c : cases) {
+    const Spacetime& spacetime = find_spacetime(c.name);
+    const Followed start = follow(spacetime, c.parameters, c.motion, ObserverFrame::at_rest, 0, "test");
+    const auto rows = spacetime.metric(c.parameters, start.event);
+    const auto rest = spacetime.static_tetrad(c.parameters, start.event);
+    const Matrix4<double> g = {Vec4<double>{rows[0]}, Vec4<double>{rows[1]}, Vec4<double>{rows[2]},
+                               Vec4<double>{rows[3]}};
+    const Tetrad<double> tetrad = {
+        {Vec4<double>{rest[0]}, Vec4<double>{rest[1]}, Vec4<double>{rest[2]}, Vec4<double>{rest[3]}}};
+    const Vec4<double> u = local_components(g, tetrad, Vec4<double>{start.axes[0]});
+    char velocity[128];
+    std::snprintf(velocity, sizeof velocity, "[%.17g, %.17g, %.17g]", u[1] / u[0], u[2] / u[0], u[3] / u[0]);
+    const std::string event = R"("event": )" + text_of_event(c.motion.event);
+    expect_same_way(c.metric, c.more,
+                    R"({"type": "circular", "speed": "free", "clockwise": )" +
+                        std::string(c.motion.clockwise ? "true, " : "false, ") + event + "}",
+                    R"({"type": "geodesic", "velocity": )" + std::string(velocity) + ", " + event + "}",
+                    2e-7);
+  }
+}
+
+/// Events of a circle.
+std::string table_of(const Circling& circle, double from, double until, int count) {
+  std::string out = R"({"type": "tabulated", "events": [)";
+  for (int i = 0; i < count; ++i)
+    out += (i ? ", " : "") + text_of_event(circle.event(from + (until - from) * i / (count - 1)));
+  return out + "]}";
+}
+
+TEST(Worldlines, ATableOfACircle) {
+  const std::string circle = R"({"type": "circular", "event": [0, 1.4, 0, 0.1], "speed": 0.5})";
+  const std::vector<double> none;
+  const Motion motion{Motion::Type::circular, {0, 1.4, 0, 0.1}, {}, {}, Motion::Pace::speed, 0.5, false};
+  const Circling line = circling({find_spacetime("minkowski"), none}, motion, "test");
+  const std::string observer = R"("observer": {"event": [20, 0.5, 0.4, 0.3]})",
+                    axes = R"(, "axes": "static")";
+  const auto error = [&](int count) {
+    return worst_of_picture(with_ball(R"("minkowski")", observer, kBall, circle, axes),
+                            with_ball(R"("minkowski")", observer, kBall, table_of(line, 0, 30, count), axes),
+                            5);
+  };
+  const double coarse = error(300), fine = error(600);
+  std::printf("a circle of 15 turns by 300 events: %.1e, by 600: %.1e\n", coarse, fine);
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_LT(fine, coarse / 6);
+}
+
+TEST(Worldlines, AClosedTimelikeCircleInItsOwnPast) {
+  const std::vector<double> a = {1};
+  const Motion motion{Motion::Type::circular, {0, 2.6, 0, 0.1}, {}, {}, Motion::Pace::closed, 0, false};
+  const Circling line = circling({find_spacetime("goedel"), a}, motion, "test");
+  EXPECT_EQ(line.time_rate, 0);
+  const double turn = 2 * kPi / std::fabs(line.turning);
+  const std::string circle = R"({"type": "circular", "event": [0, 2.6, 0, 0.1], "speed": "closed"})",
+                    observer = R"("observer": {"event": [2.2, 0.1, 0.2, 0.3]}, "max_lookback": 6)";
+  for (const std::string axes : {R"(, "axes": "static")"}) {
+    const std::string table = table_of(line, 0, turn, 2000);
+    expect_same_picture(with_ball(R"("goedel")", observer, kBall, circle, axes),
+                        with_ball(R"("goedel")", observer, kBall, table, axes), 1e-5, 5);
+  }
+  expect_same_picture(
+      with_ball(R"("goedel")", observer, kBall, circle),
+      with_ball(R"("goedel")", observer + R"(, "paths": "integrated", "accuracy": "reference")", kBall,
+                circle),
+      1e-7, 5);
+}
+
+TEST(Worldlines, IntegratedPathsSeeTheSame) {
+  const std::string
+      circle = R"({"type": "circular", "event": [0, 1.4, 0, 0.1], "speed": 0.7})",
+      fall = R"({"type": "geodesic", "event": [-2, 1.4, 0.3, 0.1], "velocity": [0.2, -0.4, 0.1]})",
+      push = R"({"type": "accelerated", "event": [-2, 1.4, 0.3, 0.1], "acceleration": [0.2, -0.4, 0.1]})",
+      rest = R"({"type": "static", "event": [-2, 1.4, 0.3, 0.1]})",
+      spin = R"(, "spin": {"axis": [1, 2, 3], "rate_deg": 40})",
+      integrated = kNear + R"(, "paths": "integrated", "accuracy": "reference")";
+  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
+    for (const std::string line : {circle, fall, push, rest})
+      expect_same_picture(with_ball(metric, kNear, kBox, line, spin),
+                          with_ball(metric, integrated, kBox, line, spin), 1e-6, 5);
+}
+
+TEST(Worldlines, WhatCannotMoveSoIsRefused) {
+  const auto refused = [](const std::string& metric, const std::string& line,
+                          const std::string& shape = kBall) {
+    try {
+      trace_text(with_ball(metric, kNear, shape, line));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_EQ(refused(R"("minkowski")",
+                    R"({"type": "tabulated", "events": [[0, 5, 0, 0], [1, 5.5, 0, 0], [2, 8, 0, 0]]})"),
+            "test: /objects/0/placing/worldline/events/0: is not slower than light on its way from here to "
+            "the next event");
+  EXPECT_EQ(refused(R"("minkowski")", R"({"type": "tabulated", "events": [[2, 5, 0, 0], [1, 5.5, 0, 0]]})"),
+            "test: /objects/0/placing/worldline/events/0: goes into the past; expected events in the order "
+            "of proper time");
+  EXPECT_EQ(refused(R"("goedel")", R"({"type": "circular", "event": [0, 1, 0, 0], "speed": "closed"})"),
+            "test: /objects/0/placing/worldline: there is no closed timelike circle through this event");
+  EXPECT_EQ(refused(R"("minkowski")",
+                    R"({"type": "accelerated", "event": [0, 5, 0, 0], "acceleration": [0, 0, 6]})"),
+            "test: /objects/0: 'ball' is too large: parts of it would have to move faster than light");
+}
+
+}  // namespace
+}  // namespace nullcone::test
