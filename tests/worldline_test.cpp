@@ -9,6 +9,7 @@
 #include "core/base/boost.h"
 #include "core/base/error.h"
 #include "core/trace/follow.h"
+#include "core/trace/metric.h"
 #include "core/trace/shapes.h"
 #include "tests/random_rays.h"
 #include "tests/same_picture.h"
@@ -48,9 +49,8 @@ Seen seen(const KnownLine& line, const Vec4<L>& x, L tau) {
   for (int i = 0; i < 60; ++i) {
     const Known at = line(tau);
     const L h = 1e-6L, late = product(at.u, x - at.P);
-    const Known next = line(tau + h), last = line(tau - h);
-    const L slope = (product(next.u, x - next.P) - product(last.u, x - last.P)) / (2 * h);
-    const L step = late / slope;
+    const Known next = line(tau + h);
+    const L step = late * h / (product(next.u, x - next.P) - late);
     tau -= step;
     if (std::fabs(step) < 1e-18L * (1 + std::fabs(tau))) break;
   }
@@ -88,9 +88,11 @@ Moving on_circle(double r, double v, double z, bool clockwise) {
                 b[2]};
     return out;
   };
-  return {R"({"type": "circular", "event": [0, )" + std::to_string(r) + ", 0, " + std::to_string(z) +
-              R"(], "speed": )" + std::to_string(v) + R"(, "clockwise": )" + (clockwise ? "true" : "false") +
-              "}",
+  char text[256];
+  std::snprintf(text, sizeof text,
+                R"({"type": "circular", "event": [0, %.17g, 0, %.17g], "speed": %.17g, "clockwise": %s})", r, z,
+                v, clockwise ? "true" : "false");
+  return {text,
           line,
           {},
           -400,
@@ -171,9 +173,10 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
   char head[512];
   std::snprintf(head, sizeof head,
                 R"({"metric": {"name": "minkowski"}, "observer": {"event": [%.17g, %.17g, %.17g, %.17g]},
-                "camera": {"type": "perspective", "fov_deg": %.17g, "resolution": [40, 40], "forward": [%.17g, %.17g, %.17g], "up": [0.1, 0.2, 1]},)",
+                "camera": {"type": "perspective", "fov_deg": %.17g, "resolution": [24, 24], "forward": [%.17g, %.17g, %.17g], "up": [0.1, 0.2, 1]},)",
                 at[0], at[1], at[2], at[3], std::min(120.0, 120 / kPi * 3 * radius / distance),
                 -static_cast<double>(way[1]), -static_cast<double>(way[2]), -static_cast<double>(way[3]));
+  if (getenv("SHOW")) std::printf("%s %s\n", head, moving.json.c_str());
   const Traced traced =
       trace_text(head +
                  (R"("objects": [{"name": "ball", "shape": {"type": "sphere", "radius": )" +
@@ -183,8 +186,8 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
   traced.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) { hits[{x, y}] = hit; });
   EXPECT_EQ(traced.rays_with(Status::step_limit) + traced.rays_with(Status::not_finite), 0U);
   const L R = radius;
-  for (std::size_t y = 0; y < 40; ++y)
-    for (std::size_t x = 0; x < 40; ++x) {
+  for (std::size_t y = 0; y < 24; ++y)
+    for (std::size_t x = 0; x < 24; ++x) {
       const Vec4<L> k = {{-1, traced.look(x, y)[0], traced.look(x, y)[1], traced.look(x, y)[2]}};
       const auto X_at = [&](L lambda, L guess) { return seen(moving.line, o + lambda * k, guess); };
       // Where it is next to the centre: both move, so look at the distances along the ray.
@@ -209,8 +212,15 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
       worst.ghosts += best > R && found != hits.end();
       if (best > R || found == hits.end()) continue;
       ++worst.hits;
-      L in = best_lambda - 40 * R, out = best_lambda;
-      for (int i = 0; i < 200; ++i) {
+      L in = best_lambda, out = best_lambda, tau_in = tau;
+      for (int i = 0; i < 400 && in == out; ++i) {  // back to where it comes in
+        const Seen back = X_at(out - L(0.05) * R, tau_in);
+        const L before = out - L(0.05) * R;
+        norm(back.X) > R ? in = before : in = out = before;
+        tau_in = back.tau;
+      }
+      tau = tau_in;
+      for (int i = 0; i < 100; ++i) {
         const L middle = (in + out) / 2;
         (norm(X_at(middle, tau).X) > R ? in : out) = middle;
       }
@@ -242,7 +252,7 @@ void report(const char* what, const Figures& worst, double limit, double radius)
               worst.hits, worst.Z, worst.tau, worst.shift, worst.mu, worst.uv, worst.skipped);
   EXPECT_EQ(worst.missed, 0U);
   EXPECT_EQ(worst.ghosts, 0U);
-  EXPECT_GT(worst.hits, kSanitized ? 200U : 2000U);
+  EXPECT_GT(worst.hits, kSanitized ? 200U : 1000U);
   EXPECT_LT(worst.Z, limit);
   EXPECT_LT(worst.tau, limit);
   EXPECT_LT(worst.shift, limit / radius);
@@ -250,7 +260,7 @@ void report(const char* what, const Figures& worst, double limit, double radius)
   EXPECT_LT(worst.uv, limit / radius);
 }
 
-constexpr int kScenes = kSanitized ? 2 : 12;
+constexpr int kScenes = kSanitized ? 2 : 6;
 
 TEST(Worldlines, CirclesInFlatSpace) {
   Random random(1);
@@ -425,7 +435,7 @@ TEST(Worldlines, IntegratedPathsSeeTheSame) {
       spin = R"(, "spin": {"axis": [1, 2, 3], "rate_deg": 40})",
       integrated = kNear + R"(, "paths": "integrated", "accuracy": "reference")";
   for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
-    for (const std::string line : {circle, fall, push, rest})
+    for (const std::string& line : {circle, fall, push, rest})
       expect_same_picture(with_ball(metric, kNear, kBox, line, spin),
                           with_ball(metric, integrated, kBox, line, spin), 1e-6, 5);
 }

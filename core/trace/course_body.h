@@ -128,14 +128,20 @@ class CourseView {
 struct TubePart {
   Vec3<double> centre{};
   double radius = 0, t = 0, half_t = 0, tau = 0, half_tau = 0, per_t = 0;
+  double reach = kFar;  ///< so far its rest frame may be trusted: proper times go on everywhere in it
 };
 
 /// What a search may conclude from an event alone.
 template <class S>
 struct Nearby {
-  S clearance;         ///< in lambda: the object is not met before; <= 0 where it may be there
-  S tau;               ///< a guess of its proper time
-  S half_tau, radius;  ///< of that part of the tube
+  /// Whether the object may be met where it seems to be.
+  Mask<S> is_trusted(const Vec3<S>& X, const S& at_tau) const {
+    return (norm(X) < reach) & (abs(at_tau - tau) <= S(2.0) * half_tau + S(4.0) * radius);
+  }
+
+  S clearance;                ///< in lambda: the object is not met before; <= 0 where it may be there
+  S tau;                      ///< a guess of its proper time
+  S half_tau, radius, reach;  ///< of that part of the tube
 };
 
 /// All parts of a world tube.
@@ -150,7 +156,7 @@ struct Tube {
   template <class S>
   Nearby<S> near(const Vec4<S>& event, const S& speed, const S& pace) const {
     const Vec3<S> X = spatial(event);
-    Nearby<S> out{S(kFar), S(0.0), S(0.0), S(0.0)};
+    Nearby<S> out{S(kFar), S(0.0), S(0.0), S(0.0), S(0.0)};
     const S per_speed = S(1.0) / speed, per_pace = S(1.0) / pace;
     for (std::size_t i = 0; i < count; ++i) {
       const TubePart& part = parts[i];
@@ -168,6 +174,7 @@ struct Tube {
       out.tau = select(nearer, S(part.tau) + S(period_tau) * times + since, out.tau);
       out.half_tau = select(nearer, S(part.half_tau), out.half_tau);
       out.radius = select(nearer, S(part.radius), out.radius);
+      out.reach = select(nearer, S(part.reach), out.reach);
     }
     return out;
   }

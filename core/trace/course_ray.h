@@ -80,6 +80,15 @@ struct StepWay {
   }
 };
 
+/// How fast a ray moves past an object at its proper time tau: its frequency there.
+template <Metric M, class S>
+S frequency(const CourseBody<M>& body, const S& tau, const Vec4<S>& tangent) {
+  const CoursePoint<S> P = body.line.at(tau);
+  Vec4<S> u = P.axes[0];
+  if constexpr (HasIsometry<M>) u = static_tetrad(body.metric, P.event).to_chart(u);
+  return max(abs(inner(body.metric.g(P.event), u, tangent)), S(1e-300));
+}
+
 /// What `advance` (crossing.h) walks along.
 template <class S, class Body, class Way>
 struct CourseRay {
@@ -99,18 +108,15 @@ struct CourseRay {
     const Nearby<S> nearby = look(lambda, out.clearance, &here);
     if (all(out.clearance > S(0.0))) return out;
     const Aboard<S> first = aboard(*body, here.event, here.tangent, nearby.tau);
-    // Beyond where its rest frame reaches, or before and behind its time, there is no object.
     const auto& line = body->line;
-    const auto there = (norm(first.X) < S(kFar)) & (abs(first.tau - nearby.tau) <= S(4.0) * nearby.half_tau) &
-                       (first.tau >= S(line.first())) & (first.tau <= S(line.last()));
-    const S past = S(0.1) * nearby.radius / here.speed;
-    out.clearance = select(there | (out.clearance > S(0.0)), out.clearance, past);
+    auto there = nearby.is_trusted(first.X, first.tau) & (first.tau >= S(line.first())) &
+                 (first.tau <= S(line.last()));
 
-    const S speed = max(norm(first.slope), S(1e-300)), far = norm(first.X) - S(ball);
-    S length = max(S(0.5) * max(far, S(ball)) / speed, S(0.0));
-    length = min(length, min(S(0.25) / max(S(abs(body->spin.rate)) * abs(first.tau_slope), S(1e-300)),
-                             S(0.5) * nearby.half_tau / max(abs(first.tau_slope), S(1e-300))));
-    length = select(there & (length > S(0.0)) & (length < S(kFar)), min(length, here.valid), here.valid);
+    const S speed = max(norm(first.slope), S(1e-300)), pace = max(abs(first.tau_slope), S(1e-300));
+    S length = S(0.5) * max(norm(first.X) - S(ball), S(ball)) / speed;
+    length = min(length, min(S(0.5) * nearby.reach / speed, S(0.5) * nearby.half_tau / pace));
+    length = min(length, S(0.25) / max(S(abs(body->spin.rate)) * pace, S(1e-300)));
+    length = select(there & (length > S(0.0)), min(length, here.valid), S(ball) / here.speed);
     constexpr std::size_t n = 3;
     std::array<Vec3<S>, n> X = {first.X}, slope = {first.slope};
     for (std::size_t k = 1; k < n; ++k) {
@@ -118,11 +124,16 @@ struct CourseRay {
       const Underway<S> next = way.at(lambda + delta);
       const Aboard<S> on = aboard(*body, next.event, next.tangent, first.tau + delta * first.tau_slope);
       X[k] = on.X, slope[k] = on.slope;
+      there = there & (norm(on.X) < S(kFar)) & (norm(on.slope) < S(kFar));
     }
     const S clearance = out.clearance;
     out = Curve<S, n>(X, slope, length).at(S(0.0));
-    out.clearance = clearance;
     out.X = first.X, out.slope = first.slope;
+    // Where its rest frame does not reach, or before and behind its time, there is no object, nor soon.
+    const S past =
+        S(0.5) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
+    const S soon = min(min(past, S(0.2) * nearby.radius / here.speed), here.valid);
+    out.clearance = select(there | (clearance > S(0.0)), clearance, soon);
     return out;
   }
 
@@ -136,7 +147,7 @@ struct CourseRay {
     const S distance = norm(from_tube), gap = distance - S(tube.radius);
     // What recedes on a straight line never comes back.
     const auto gone = here.straight & (gap > S(0.0)) & (dot(from_tube, spatial(here.tangent)) > S(0.0));
-    Nearby<S> out{gap / here.speed, S(0.0), S(0.0), S(0.0)};
+    Nearby<S> out{gap / here.speed, S(0.0), S(0.0), S(0.0), S(0.0)};
     if (!all(gap > S(tube.radius))) out = tube.near(here.event, here.speed, here.pace);
     clearance = select(gone, S(kFar), max(min(out.clearance, here.valid), S(0.0)));
     return out;

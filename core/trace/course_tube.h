@@ -9,6 +9,24 @@
 
 NULLCONE_KERNEL_BEGIN
 
+/// How far the rest frame at tau may be trusted. An event at X in it grows late at the rate 1 + a.X as the
+/// object goes on; where that comes to zero, simultaneity ends.
+template <Metric M>
+double reach_of(const CourseBody<M>& body, double ball, double tau) {
+  using D = Dual<double, 1>;
+  const auto rate = [&](const Vec3<double>& X) {
+    const Vec4<double> event = body.event(tau, X);
+    return body.local(convert<D>(event), D::variable(tau, 0)).first.d[0];
+  };
+  const double there = rate({});
+  const auto a = Vec3<double>::map([&](std::size_t i) {
+    Vec3<double> X{};
+    X[i] = ball;
+    return (rate(X) / there - 1) / ball;
+  });
+  return min(max(0.5 / norm(a), 1.25 * ball), 0.95 / norm(a));
+}
+
 /// From one proper time to another: what a part of the tube must hold is looked up at some points of the
 /// object's bounding ball, and a little is added for what lies between them.
 template <Metric M>
@@ -32,6 +50,8 @@ TubePart tube_part(const CourseBody<M>& body, double ball, double from, double u
   const double t0 = body.event(from, Vec3<double>{})[0], t1 = body.event(until, Vec3<double>{})[0];
   const double per_t = (until - from) / (t1 - t0);
   if (t1 != t0 && std::isfinite(per_t)) out.per_t = per_t;
+  for (const double tau : {from, 0.5 * (from + until), until})
+    out.reach = min(out.reach, reach_of(body, ball, tau));
   return out;
 }
 
