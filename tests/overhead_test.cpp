@@ -19,9 +19,11 @@ double nearest(const Vec3<double>& look, double height) {
   const double s2 = look[0] * look[0] + look[1] * look[1], kappa = std::sqrt(1 - s2 / 2);
   const double r_max = 2 * std::sqrt(s2 / (2 - s2));
   double least = 1e300;
-  constexpr int kPoints = 2000;
-  for (int i = 0; i <= kPoints; ++i) {
-    const double lambda = kLookback * i / kPoints;
+  constexpr int kPoints = 1000;
+  const double from = std::max(std::fabs(height) - 0.45, 0.0) / std::fabs(look[2]);  // radii are below that
+  const double to = std::min((std::fabs(height) + 0.45) / std::fabs(look[2]), kLookback);
+  for (int i = 0; i <= kPoints && from < to; ++i) {
+    const double lambda = from + (to - from) * i / kPoints;
     const double r = r_max * std::sin(kappa * lambda / std::numbers::sqrt2), z = look[2] * lambda - height;
     least = std::min(least, std::hypot(r, z));
   }
