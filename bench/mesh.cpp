@@ -1,5 +1,6 @@
-// What it costs to find where rays meet a mesh, and to read one. Rays go through the search of the tracer,
-// one lane at a time; if Embree is there, its rays stand beside.
+// What it costs to find where rays meet a mesh, to trace a scene of one with the kernels that trace pictures,
+// and to read one. `mesh_camera` and `mesh_random` are the search alone, one lane at a time; `mesh_scene` is
+// a whole scene in one thread, from pixels to records in memory. If Embree is there, its rays stand beside.
 #include <benchmark/benchmark.h>
 
 #include <unistd.h>
@@ -16,7 +17,9 @@
 #include "core/trace/any_shape.h"
 #include "core/trace/crossing.h"
 #include "core/trace/placing.h"
+#include "core/trace/trace_scene.h"
 #include "metrics/minkowski_kernel.h"
+#include "metrics/registry.h"
 #ifdef NULLCONE_EMBREE
 #include <embree3/rtcore.h>
 #endif
@@ -124,12 +127,13 @@ void mesh_tree(benchmark::State& state, int parts) {
   state.SetItemsProcessed(state.iterations() * triangles_of(parts));
 }
 
-/// Text and tree.
-void mesh_obj(benchmark::State& state, int parts) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("nullcone_bench_" + std::to_string(getpid()) + ".obj"));
-  {
-    std::ofstream out(path);
+/// An OBJ file in a folder of its own, with the scene that it goes with beside it.
+class ObjFile {
+ public:
+  explicit ObjFile(int parts)
+      : folder_(std::filesystem::temp_directory_path() / ("nullcone_bench_" + std::to_string(getpid()))) {
+    std::filesystem::create_directory(folder_);
+    std::ofstream out(path());
     char line[128];
     const TriangleSoup& soup = soup_of(parts);
     for (const auto& p : soup.positions)
@@ -137,9 +141,41 @@ void mesh_obj(benchmark::State& state, int parts) {
     for (const auto& t : soup.triangles)
       out.write(line, std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1));
   }
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(path, 1)));
+  ObjFile(const ObjFile&) = delete;
+  ObjFile& operator=(const ObjFile&) = delete;
+  ~ObjFile() { std::filesystem::remove_all(folder_); }
+  std::string path() const { return folder_ / "mesh.obj"; }
+  std::string scene() const { return folder_ / "scene.json"; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Text and tree.
+void mesh_obj(benchmark::State& state, int parts) {
+  const ObjFile file(parts);
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(file.path(), 1)));
   state.SetItemsProcessed(state.iterations() * triangles_of(parts));
-  std::filesystem::remove(path);
+}
+
+/// The view of `mesh_camera` as a scene: the search, the records, and all that is around them, with the
+/// kernel of the best instruction set in one thread. Processor time, for machines with other work. Items are
+/// rays.
+void mesh_scene(benchmark::State& state, int parts) {
+  const ObjFile file(parts);
+  Scene scene = read_scene(
+      R"({"metric": {"name": "minkowski"}, "observer": {"event": [0, 0, 0, -4]}, "camera": {"type": "perspective",
+      "forward": [0, 0, 1], "up": [0, 1, 0], "fov_deg": 18.18, "resolution": [800, 800]}, "objects": [{"name": "mesh",
+      "shape": {"type": "mesh", "file": "mesh.obj"}, "placing": {"type": "coordinate", "centre": [0, 0, 0]}}]})",
+      file.scene(), metric_descriptions());
+  const auto tracer = prepare_scene(find_spacetime(scene.metric), scene, "benchmark");
+  std::size_t hits = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    hits = 0;
+    const auto count = [&](Band&& band) { hits += band.hits.count(); };
+    state.SetIterationTime(trace_bands(*tracer, scene, {0, scene.camera.height}, 1, {}, count));
+  }
+  count_rays(state, static_cast<std::size_t>(scene.camera.width * scene.camera.height), hits);
 }
 
 #ifdef NULLCONE_EMBREE
@@ -198,6 +234,7 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark(("embree" + rays + triangles).c_str(), embree_rays, parts, camera);
 #endif
     }
+    benchmark::RegisterBenchmark(("mesh_scene" + triangles).c_str(), mesh_scene, parts)->UseManualTime();
     benchmark::RegisterBenchmark(("mesh_tree" + triangles).c_str(), mesh_tree, parts);
     benchmark::RegisterBenchmark(("mesh_obj" + triangles).c_str(), mesh_obj, parts);
   }

@@ -21,8 +21,10 @@ tracing the demo, SSE2 to AVX-512 | bench_trace | earth/sse2 | earth/avx512 |
 tracing three spheres at rest, SSE2 to AVX2 | bench_trace | three_spheres/sse2 | three_spheres/avx2 |
 tracing three spheres at rest, SSE2 to AVX-512 | bench_trace | three_spheres/sse2 | three_spheres/avx512 |
 tracing the demo, AVX-512 on one thread to two | bench_trace | earth/avx512 | earth/2_threads |
-a camera's ray on 998000 triangles to 960 | bench_mesh | mesh_camera/998000 | mesh_camera/960 | 3
+a ray of a camera on 998000 triangles to 960 | bench_mesh | mesh_camera/998000 | mesh_camera/960 | 3
 a random ray on 998000 triangles to 960 | bench_mesh | mesh_random/998000 | mesh_random/960 | 3
+a scene of 100488 triangles to one of 960 | bench_mesh | mesh_scene/100488 | mesh_scene/960 |
+a scene of 998000 triangles to one of 960 | bench_mesh | mesh_scene/998000 | mesh_scene/960 | 3
 evaluating a path, one lane to AVX-512 | bench_trace | evaluation/onelane | evaluation/avx512 |
 frames on one thread to two | bench_postrender | frames/black_body_mipmap/1 | frames/black_body_mipmap/2 |
 shading with SSE2 to AVX2 | bench_postrender | shade/black_body_mipmap/sse2 | shade/black_body_mipmap/avx2 |

@@ -19,7 +19,8 @@ struct GoedelGuard {
 
   /// A first sieve without divisions and roots: false for rays whose least distance from the axis is surely
   /// greater than the ball, or that move away from it along z. Least |q|^2 <= u^2 means
-  /// Im(conj(q0) w)^2 <= 2 C u^2 - u^4, here times (kappa k0)^2.
+  /// Im(conj(q0) w)^2 <= 2 C u^2 - u^4, here times (kappa k0)^2; or C <= u^2: rays that run along the axis
+  /// may never be farther from it than u.
   static Mask<S> may_meet(const Goedel& metric, const Vec4<double>& start, const Vec4<S>& k,
                           double bounding_radius) {
     const Complex<double> q0 = metric.to_q(start);
@@ -29,8 +30,9 @@ struct GoedelGuard {
     const S kappa2 = k[0] * k[0] - S(0.5) * (k[1] * k[1] + k[2] * k[2]);
     const Complex<S> w = {S(p0) * k[1] + S(q0.im) * k[0], S(p0) * k[2] - S(q0.re) * k[0]};
     const S moment = S(q0.re) * w.im - S(q0.im) * w.re, w2 = norm2(w);
-    const auto in_plane =
-        moment * moment <= (S(q2) * kappa2 + w2) * S(u2) - kappa2 * S(u2 * u2) + S(1e-14 * q2) * w2;
+    const S twice_C = S(q2) * kappa2 + w2;
+    const auto in_plane = (moment * moment <= twice_C * S(u2) - kappa2 * S(u2 * u2) + S(1e-14 * q2) * w2) |
+                          (twice_C <= kappa2 * S(2 * u2));
     if (std::fabs(start[3]) <= ball) return in_plane;
     return in_plane & (S(start[3]) * k[3] < S(0.0));
   }
