@@ -25,7 +25,8 @@ class MeshFiles : public testing::Test {
   std::string scene() const { return path("scene.json"); }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   Shape read(const json& shape) const {
-    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene());
+    MeshHashes hashes;
+    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene(), hashes);
   }
   std::shared_ptr<const Mesh> mesh(const std::string& file) const {
     return read({{"type", "mesh"}, {"file", file}}).mesh;

@@ -41,21 +41,22 @@ std::size_t middle(const Dataset& dataset) {
 }  // namespace
 
 TEST(LiveScene, TellsWhatHindersIt) {
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(kFlat)), "");
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(kGoedel)), "");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(kFlat), ""), "");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(kGoedel), ""), "");
   json other = kFlat;
   other["paths"] = "integrated";
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(other)), "the scene asks for integrated paths");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(other), ""), "the scene asks for integrated paths");
   other = kFlat;
   other["metric"] = {{"name", "kerr_schild"}};
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(other)), "the spacetime 'kerr_schild' has no closed-form paths");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(other), ""),
+            "the spacetime 'kerr_schild' has no closed-form paths");
   other["metric"] = {{"name", "nonsense"}};
-  EXPECT_NE(LiveScene::hindrance(manifest_of(other)), "");
-  EXPECT_NE(LiveScene::hindrance(Manifest{}), "");
+  EXPECT_NE(LiveScene::hindrance(manifest_of(other), ""), "");
+  EXPECT_NE(LiveScene::hindrance(Manifest{}, ""), "");
   Manifest window = manifest_of(kFlat);
   window.height = 64;
-  EXPECT_NE(LiveScene::hindrance(window).find("part of a picture"), std::string::npos);
-  EXPECT_THROW(LiveScene{window}, InputError);
+  EXPECT_NE(LiveScene::hindrance(window, "").find("part of a picture"), std::string::npos);
+  EXPECT_THROW(LiveScene(window, ""), InputError);
 }
 
 TEST(LiveScene, ReplacesNumbersOfTheScene) {

@@ -148,11 +148,14 @@ int finish_once(const Folder& folder, int number, int threads) {
 int submit(const SubmitOptions& options) {
   catch_stop_signals();
   const Folder folder(options.output);
-  const SceneSource scene(options.scene);
+  SceneSource scene(options.scene);
   const Settings& settings = options.settings;
-  const TraceFrames frames(scene.file.path, scene.file, folder.data(), settings.frames);
+  const auto frames_asked = [&] {
+    return TraceFrames(scene.file.path, scene.file, folder.data(), settings.frames);
+  };
+  scene.pin_meshes(frames_asked());
+  const TraceFrames frames = frames_asked();
   check_scenes(frames, settings.shards);
-  check_meshes(scene, folder);
   if (options.dry_run) return dry_run(folder, frames, request(folder, scene, settings));
   if (!options.local && !options.scripts_only && !has_slurm())
     throw InputError("sbatch", "is not on PATH; expected Slurm, or --local or --scripts-only");
