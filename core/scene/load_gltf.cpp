@@ -92,6 +92,8 @@ tinygltf::Model load(MeshFile& file, Beside& beside) {
     error = failure.what();
   }
   error.erase(error.find_last_not_of(" \n") + 1);
+  for (std::size_t at; (at = error.find(Beside::kFolder)) != error.npos;)
+    error.erase(at, Beside::kFolder.size());
   if (!whole || !error.empty()) file.refuse("is not a glTF 2.0 file: " + printable(error));
   return model;
 }

@@ -60,6 +60,7 @@ class ObjLines final : public std::streambuf {
       if (line_.size() > kLongest) refuse("is longer than 65536 characters; expected a Wavefront OBJ file");
       if (!newline) continue;
       if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+      if (number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);  // UTF-8, says Windows
       return true;
     }
   }
