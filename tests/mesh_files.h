@@ -56,7 +56,7 @@ class MeshFiles : public testing::Test {
 };
 
 /// The area of all triangles, and the volume that they enclose; in true lengths.
-std::array<double, 2> area_and_volume(const Mesh& mesh) {
+[[maybe_unused]] std::array<double, 2> area_and_volume(const Mesh& mesh) {
   std::array<double, 2> out{};
   for (const MeshTriangle& t : mesh.triangles) {
     std::array<std::array<double, 3>, 3> p;

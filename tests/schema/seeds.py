@@ -8,7 +8,7 @@ FILES = {
     "triangle.bin": "\0" * 12 + "\0\0@@" + "\0" * 12 + "\0\0@@" + "\0" * 4,  # three corners, two of them 3 away
     "triangle.gltf": json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}}]}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}),
 }
