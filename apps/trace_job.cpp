@@ -1,7 +1,9 @@
 #include "apps/trace_job.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/preview.h"
 #include "core/base/error.h"
@@ -13,6 +15,23 @@ namespace {
 bool read_whole(std::string_view text, int& out) {
   const auto end = text.data() + text.size();
   return std::from_chars(text.data(), end, out) == std::from_chars_result{end, std::errc{}};
+}
+
+/// The file of a mesh that is another, where scenes differ in nothing but that; else empty.
+std::string other_mesh(const Manifest& a, const Manifest& b) {
+  using nlohmann::json;
+  json scene = json::parse(a.scene, nullptr, false), other = json::parse(b.scene, nullptr, false);
+  if (!scene.is_object() || !other.is_object()) return {};
+  scene.erase("look"), other.erase("look");
+  std::string out;
+  for (const json& step : json::diff(scene, other)) {
+    const std::string path = step.at("path");
+    const std::size_t entry = std::max(path.find("/shape/sha256") + 1, path.find("/shape/buffers") + 1);
+    if (entry == 0) return {};
+    const json::json_pointer file(path.substr(0, entry - 1) + "/shape/file");
+    if (scene.contains(file) && scene.at(file).is_string()) out = scene.at(file).get<std::string>();
+  }
+  return out;
 }
 
 }  // namespace
@@ -57,6 +76,8 @@ std::string difference(const Manifest& a, const Manifest& b) {
   const auto other = [](const char* what, const auto& x, const auto& y) {
     return std::string("has another ") + what + ": " + printable(x, 80) + " instead of " + printable(y, 80);
   };
+  if (const std::string mesh = a.scene_sha256 == b.scene_sha256 ? "" : other_mesh(a, b); !mesh.empty())
+    return "was traced with another mesh file '" + printable(mesh) + "'";
   if (a.scene_sha256 != b.scene_sha256) return other("scene", a.scene_sha256, b.scene_sha256);
   if (a.version != b.version) return other("version", a.version, b.version);
   if (a.format != b.format) return other("format", std::to_string(a.format), std::to_string(b.format));

@@ -45,7 +45,7 @@ view::LiveScene live_scene(const std::string& text, json& look) {
   Manifest manifest;
   manifest.set_size(1, 1);
   manifest.scene = canonical_json(scene);
-  return view::LiveScene(manifest);
+  return view::LiveScene(manifest, "");
 }
 
 /// What is dragged: nothing stays as it was. `from`: where the observer is to begin with.

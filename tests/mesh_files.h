@@ -25,7 +25,8 @@ class MeshFiles : public testing::Test {
   std::string scene() const { return path("scene.json"); }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   Shape read(const json& shape) const {
-    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene());
+    MeshHashes hashes;
+    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene(), hashes);
   }
   std::shared_ptr<const Mesh> mesh(const std::string& file) const {
     return read({{"type", "mesh"}, {"file", file}}).mesh;
@@ -55,7 +56,7 @@ class MeshFiles : public testing::Test {
 };
 
 /// The area of all triangles, and the volume that they enclose; in true lengths.
-std::array<double, 2> area_and_volume(const Mesh& mesh) {
+[[maybe_unused]] std::array<double, 2> area_and_volume(const Mesh& mesh) {
   std::array<double, 2> out{};
   for (const MeshTriangle& t : mesh.triangles) {
     std::array<std::array<double, 3>, 3> p;

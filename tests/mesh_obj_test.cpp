@@ -41,6 +41,12 @@ TEST_F(ObjFiles, ObjOfATetrahedron) {
   EXPECT_TRUE(read({{"type", "mesh"}, {"file", "t.obj"}, {"dome", true}}).dome);
 }
 
+TEST_F(ObjFiles, ObjWithAByteOrderMark) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 9\nf 1 2 3\n";
+  write("t.obj", "\xEF\xBB\xBF" + text);
+  EXPECT_NEAR(area_and_volume(*mesh("t.obj"))[0], 1, 1e-14) << "the first corner is one too";
+}
+
 TEST_F(ObjFiles, ObjPolygonsTextureAndNormals) {
   // A concave polygon: a fan would cover what is not there.
   write("u.obj",

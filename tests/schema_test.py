@@ -17,8 +17,6 @@ import jsonschema
 from schema import mutate, rare, seeds
 from schema.unsaid import RANGE, UNSAID, has_keyframes
 
-TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 3//1 2//1\nf 1//1 2//1 4//1\nf 1//1 4//1 3//1\nf 2//1 3//1 4//1\n"
-
 
 class Held:
     """Both verdicts of many documents."""
@@ -167,7 +165,7 @@ def main():
     begun = time.time()
     with tempfile.TemporaryDirectory() as folder:
         held = Held(reader, source, pathlib.Path(folder))
-        for name, text in (("top.json", "{}"), ("table.csv", "400,1\n700,0.5\n"), ("tone.csv", "0,0\n1,1\n"), ("list.json", "[]"), ("tetra.obj", TETRAHEDRON)):
+        for name, text in (("top.json", "{}"), ("table.csv", "400,1\n700,0.5\n"), ("tone.csv", "0,0\n1,1\n"), ("list.json", "[]"), *seeds.FILES.items()):
             (pathlib.Path(folder) / name).write_text(text)
         check_shipped(held, source)
         own = [("scene", one) for one in seeds.SCENES.values()] + [("look", one) for one in seeds.LOOKS.values()]

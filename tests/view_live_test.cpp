@@ -8,6 +8,7 @@
 #include "core/trace/trace_scene.h"
 #include "metrics/registry.h"
 #include "tests/live_scenes.h"
+#include "tests/test_folder.h"
 
 namespace nullcone::view {
 
@@ -41,21 +42,22 @@ std::size_t middle(const Dataset& dataset) {
 }  // namespace
 
 TEST(LiveScene, TellsWhatHindersIt) {
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(kFlat)), "");
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(kGoedel)), "");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(kFlat), ""), "");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(kGoedel), ""), "");
   json other = kFlat;
   other["paths"] = "integrated";
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(other)), "the scene asks for integrated paths");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(other), ""), "the scene asks for integrated paths");
   other = kFlat;
   other["metric"] = {{"name", "kerr_schild"}};
-  EXPECT_EQ(LiveScene::hindrance(manifest_of(other)), "the spacetime 'kerr_schild' has no closed-form paths");
+  EXPECT_EQ(LiveScene::hindrance(manifest_of(other), ""),
+            "the spacetime 'kerr_schild' has no closed-form paths");
   other["metric"] = {{"name", "nonsense"}};
-  EXPECT_NE(LiveScene::hindrance(manifest_of(other)), "");
-  EXPECT_NE(LiveScene::hindrance(Manifest{}), "");
+  EXPECT_NE(LiveScene::hindrance(manifest_of(other), ""), "");
+  EXPECT_NE(LiveScene::hindrance(Manifest{}, ""), "");
   Manifest window = manifest_of(kFlat);
   window.height = 64;
-  EXPECT_NE(LiveScene::hindrance(window).find("part of a picture"), std::string::npos);
-  EXPECT_THROW(LiveScene{window}, InputError);
+  EXPECT_NE(LiveScene::hindrance(window, "").find("part of a picture"), std::string::npos);
+  EXPECT_THROW(LiveScene(window, ""), InputError);
 }
 
 TEST(LiveScene, ReplacesNumbersOfTheScene) {
@@ -81,6 +83,33 @@ TEST(LiveScene, ReplacesNumbersOfTheScene) {
   expected["metric"]["a"] = 1.5;
   expected["camera"]["fov_deg"] = {90, 45};
   expect_same(kGoedel, {{"metric", {{"a", 1.5}}}, {"camera", {{"fov_deg", {90, 45}}}}}, expected);
+}
+
+TEST(LiveScene, FindsMeshesBesideTheDataset) {
+  const test::TestFolder folder;
+  const std::string rock = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  folder.write("rock.obj", rock);
+  json scene = kFlat;
+  scene["objects"][0]["shape"] = {{"type", "mesh"}, {"file", "rock.obj"}};
+  const Scene read = read_scene(canonical_json(scene), folder.file("scene.json"), metric_descriptions());
+  Manifest manifest = manifest_of(kFlat);
+  manifest.scene = read.canonical;
+  const std::string dataset = folder.file("a.exr");
+  EXPECT_EQ(LiveScene::hindrance(manifest, dataset), "");
+  EXPECT_EQ(LiveScene::hindrance(manifest, "a.exr"),
+            "rock.obj: cannot open the file: No such file or directory");
+  const LiveScene traced(manifest, dataset);
+  EXPECT_GT(traced.trace(nullptr, 1).hits.count(), 0u);
+  EXPECT_EQ(traced.trace(nullptr, 1).manifest.scene_sha256, read.sha256);
+
+  folder.write("rock.obj", rock + "f 1 2 3\n");
+  const std::string fault = LiveScene::hindrance(manifest, dataset);
+  EXPECT_TRUE(fault.starts_with("scene: /objects/0/shape/sha256: the file 'rock.obj' is another")) << fault;
+  EXPECT_THROW(LiveScene(manifest, dataset), InputError);
+  EXPECT_THROW(traced.trace(nullptr, 1), InputError);
+  folder.write("rock.obj", "v 1 2\n");
+  EXPECT_EQ(LiveScene::hindrance(manifest, dataset), "rock.obj: line 1: expected 3 numbers after v")
+      << "without the folder's name";
 }
 
 Camera camera_of(const Dataset& traced) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "apps/cluster/geometry.h"
 #include "apps/scene_file.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
@@ -36,23 +37,20 @@ void write_if_new(const std::string& path, const json& document) {
 SceneSource::SceneSource(const std::string& path)
     : file(read_sequence(path)), sha256(sha256_without_look(file.document)) {}
 
+void SceneSource::pin_meshes(const TraceFrames& frames) {
+  const json first = json::parse(frames.scene(frames.numbers().front()).canonical);
+  json& objects = file.document["objects"];
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const char* key : {"sha256", "buffers"})
+      if (const json& shape = first.at("objects")[i]["shape"]; shape.contains(key))
+        objects[i]["shape"][key] = shape[key];
+  sha256 = sha256_without_look(file.document);
+}
+
 void check_scenes(const TraceFrames& frames, int shards) {
   for (const int frame : frames.numbers()) {
     const Scene scene = frames.scene(frame);
     if (shards > 1) lines_of({1, shards}, scene.camera.height);
-  }
-}
-
-void check_meshes(const SceneSource& scene, const Folder& folder) {
-  const json::json_pointer file("/shape/file");
-  for (const json& object : scene.file.document.at("objects")) {
-    if (!object.contains(file)) continue;
-    const std::string name = object.at(file).get<std::string>();
-    std::error_code error;
-    if (!std::filesystem::exists(folder.path() + "/" + name, error))
-      throw InputError(folder.path(),
-                       "lacks the mesh '" + printable(name) +
-                           "': tasks look for it beside the folder's scene; copy it there first");
   }
 }
 
@@ -69,6 +67,7 @@ void refuse_strangers(const TraceFrames& frames, int threads) {
 }
 
 void adopt(const SceneSource& scene, const Folder& folder) {
+  copy_meshes(scene.file, folder);
   write_if_new(folder.scene(), scene.file.document);
   if (scene.file.document.contains("look"))
     write_if_new(folder.look(), scene.file.document.at("look"));

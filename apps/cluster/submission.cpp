@@ -148,19 +148,23 @@ int finish_once(const Folder& folder, int number, int threads) {
 int submit(const SubmitOptions& options) {
   catch_stop_signals();
   const Folder folder(options.output);
-  const SceneSource scene(options.scene);
+  SceneSource scene(options.scene);
   const Settings& settings = options.settings;
-  const TraceFrames frames(scene.file.path, scene.file, folder.data(), settings.frames);
-  check_scenes(frames, settings.shards);
-  check_meshes(scene, folder);
-  if (options.dry_run) return dry_run(folder, frames, request(folder, scene, settings));
+  const auto frames_from = [&](const std::string& path) {
+    return TraceFrames(path, scene.file, folder.data(), settings.frames);
+  };
+  scene.pin_meshes(frames_from(scene.file.path));
+  const TraceFrames given = frames_from(scene.file.path);
+  check_scenes(given, settings.shards);
+  if (options.dry_run) return dry_run(folder, given, request(folder, scene, settings));
   if (!options.local && !options.scripts_only && !has_slurm())
     throw InputError("sbatch", "is not on PATH; expected Slurm, or --local or --scripts-only");
   folder.create();
   const SubmissionLock lock(folder, kPatience_s);
-  if (!options.replace) refuse_strangers(frames, kReadingThreads);
+  if (!options.replace) refuse_strangers(given, kReadingThreads);
   refuse_other_work(folder, scene, options.local);
   adopt(scene, folder);
+  const TraceFrames frames = frames_from(folder.scene());  // with the folder's meshes
   merge_shards(frames, settings.shards, kReadingThreads);
   const Round wanted = request(folder, scene, settings);
   if (options.local) return work_locally(folder, frames, wanted, options.jobs, options.quiet);

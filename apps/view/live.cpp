@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "apps/trace_job.h"
 #include "apps/view/scene_changes.h"
@@ -49,14 +50,29 @@ void check_work(const Scene& scene, double most) {
                                                       " in a viewer (nullcone-trace takes any number)");
 }
 
+/// Reads a scene as if its file stood beside the dataset. Complaints do not name that folder.
+Scene read_beside(const std::string& dataset, const std::string& text,
+                  std::span<const MetricDescription> metrics) {
+  const std::string place = (std::filesystem::path(dataset).parent_path() / "scene").string(),
+                    folder = place.substr(0, place.size() - std::string_view("scene").size());
+  try {
+    return read_scene(text, place, metrics);
+  } catch (const InputError& error) {
+    const std::string what = error.what(), shown = printable(folder, folder.size());
+    const std::string line = what.starts_with(shown) ? what.substr(shown.size()) : what;
+    const std::size_t colon = std::min(line.find(": "), line.size());
+    throw InputError(line.substr(0, colon), colon == line.size() ? "" : line.substr(colon + 2));
+  }
+}
+
 }  // namespace
 
-std::string LiveScene::hindrance(const Manifest& manifest) {
+std::string LiveScene::hindrance(const Manifest& manifest, const std::string& dataset) {
   if (manifest.scene.empty()) return "the dataset does not say of which scene it is";
   if (manifest.first_line != 0 || manifest.lines != manifest.height)
     return "the dataset is a part of a picture; expected a whole one (nullcone-merge)";
   try {
-    const Scene scene = read_scene(manifest.scene, "scene", metric_descriptions());
+    const Scene scene = read_beside(dataset, manifest.scene, metric_descriptions());
     if (!scene.integrated) return {};
     const auto metrics = metric_descriptions();
     const auto metric = std::ranges::find(metrics, scene.metric, &MetricDescription::name);
@@ -67,8 +83,10 @@ std::string LiveScene::hindrance(const Manifest& manifest) {
   }
 }
 
-LiveScene::LiveScene(const Manifest& manifest, const LiveLimits& limits) : limits_(limits) {
-  if (const std::string reason = hindrance(manifest); !reason.empty()) throw InputError("scene", reason);
+LiveScene::LiveScene(const Manifest& manifest, const std::string& dataset, const LiveLimits& limits)
+    : dataset_(dataset), limits_(limits) {
+  if (const std::string reason = hindrance(manifest, dataset); !reason.empty())
+    throw InputError("scene", reason);
   scene_ = parse_json(manifest.scene, "scene");
   for (const MetricDescription& metric : metric_descriptions())
     if (scene_.at("metric").at("name") == metric.name) metric_ = metric;
@@ -80,7 +98,7 @@ Scene LiveScene::changed(const json& changes, const json& look, int scale) const
   apply_changes(changes, metric_, scene);
   make_coarser(scene, scale);
   if (!look.is_null()) scene["look"] = look;
-  return read_scene(canonical_json(scene), "scene", {&metric_, 1});
+  return read_beside(dataset_, canonical_json(scene), {&metric_, 1});
 }
 
 Dataset LiveScene::trace(const json& changes, int scale) const {

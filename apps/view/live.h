@@ -19,11 +19,12 @@ struct LiveLimits {
 /// Immutable: any number of threads may trace it.
 class LiveScene {
  public:
-  /// Why the scene of a dataset cannot be traced live, in one line; empty if it can.
-  static std::string hindrance(const Manifest& manifest);
+  /// Why the scene of a dataset, which was read from the file `dataset`, cannot be traced live, in one line;
+  /// empty if it can. Meshes are looked for beside that file.
+  static std::string hindrance(const Manifest& manifest, const std::string& dataset);
 
   /// Throws InputError where there is a hindrance.
-  explicit LiveScene(const Manifest& manifest, const LiveLimits& limits = {});
+  LiveScene(const Manifest& manifest, const std::string& dataset, const LiveLimits& limits = {});
 
   /// Traces the scene with `changes` (scene_changes.h) in memory, its resolution divided by `scale` (1 to 8),
   /// with one ray a pixel where that is not 1; without fingerprints. Throws InputError with the place of what
@@ -38,6 +39,7 @@ class LiveScene {
   Scene changed(const nlohmann::json& changes, const nlohmann::json& look, int scale) const;
 
   nlohmann::json scene_;
+  std::string dataset_;
   MetricDescription metric_;
   LiveLimits limits_;
 };

@@ -18,7 +18,11 @@ std::uint32_t little(const std::string& bytes, std::size_t at) {
 }  // namespace
 
 GltfChunks chunks_of(const std::string& bytes, const MeshFile& file) {
-  if (!bytes.starts_with("glTF")) return {bytes, {}};
+  if (!bytes.starts_with("glTF")) {
+    if (bytes.find('\0') != bytes.npos)
+      file.refuse("is not text, and does not begin with glTF; expected a glTF 2.0 file");
+    return {bytes, {}};
+  }
   const std::uint64_t size = bytes.size();
   if (size < 20 || little(bytes, 4) != 2 || little(bytes, 16) != 0x4E4F534A ||
       20 + std::uint64_t{little(bytes, 12)} > size)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -22,12 +23,14 @@ namespace {
 struct Beside {
   std::string path;
   std::size_t left = MeshFile::kLargest;
+  std::map<std::string, std::string> hashes = {};  ///< of what was read, by name
 
   /// The loader looks in its own folder, which is called @ here, and elsewhere.
   static constexpr std::string_view kFolder = "@/";
 
-  std::string real(const std::string& name) const {
-    const std::string below = name.substr(kFolder.size());
+  /// Of what the loader calls @/name.
+  static std::string name_of(const std::string& name) { return name.substr(kFolder.size()); }
+  std::string real(const std::string& below) const {
     if (!stays_below(below))
       throw InputError(path, "names the file '" + printable(below) + "'; expected one beside it, without ..");
     return (std::filesystem::path(path).parent_path() / below).string();
@@ -40,11 +43,14 @@ tinygltf::FsCallbacks reading(Beside& beside) {
   out.ExpandFilePath = [](const std::string& name, void*) { return name; };
   out.ReadWholeFile = [](std::vector<unsigned char>* to, std::string*, const std::string& name, void* user) {
     auto& from = *static_cast<Beside*>(user);
-    MeshFile file(from.real(name));
+    const std::string below = Beside::name_of(name);
+    MeshFile file(from.real(below));
     if (file.size() > from.left) file.refuse("makes more than 1 GiB of buffers");
     from.left -= file.size();
     to->resize(file.size());
     to->resize(file.read(reinterpret_cast<char*>(to->data()), to->size()));
+    const std::string hash = file.sha256();
+    if (from.hashes.emplace(below, hash).first->second != hash) file.refuse("changes while it is read");
     return true;
   };
   out.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
@@ -54,14 +60,13 @@ tinygltf::FsCallbacks reading(Beside& beside) {
   return out;
 }
 
-tinygltf::Model load(MeshFile& file) {
+tinygltf::Model load(MeshFile& file, Beside& beside) {
   const std::string bytes = file.read_all();
   const GltfChunks chunks = chunks_of(bytes, file);
   if (chunks.json.size() > std::size_t{1} << 26) file.refuse("has more than 64 MiB of JSON");
   nlohmann::json document = parse_json(chunks.json, file.path());
   if (!document.is_object()) file.refuse("expected an object {…}, the JSON of a glTF 2.0 file");
   prune_gltf(document, file);
-  Beside beside{file.path()};
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(reading(beside));
   loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
@@ -87,6 +92,8 @@ tinygltf::Model load(MeshFile& file) {
     error = failure.what();
   }
   error.erase(error.find_last_not_of(" \n") + 1);
+  for (std::size_t at; (at = error.find(Beside::kFolder)) != error.npos;)
+    error.erase(at, Beside::kFolder.size());
   if (!whole || !error.empty()) file.refuse("is not a glTF 2.0 file: " + printable(error));
   return model;
 }
@@ -244,10 +251,11 @@ class GltfReader {
 
 }  // namespace
 
-TriangleSoup load_gltf(const std::string& path, double scale) {
+LoadedMesh load_gltf(const std::string& path, double scale) {
   MeshFile file(path);
-  const tinygltf::Model model = load(file);
-  return GltfReader(model, file, scale).read();
+  Beside beside{path};
+  const tinygltf::Model model = load(file, beside);
+  return {GltfReader(model, file, scale).read(), {file.sha256(), std::move(beside.hashes)}};
 }
 
 }  // namespace nullcone

@@ -60,6 +60,7 @@ class ObjLines final : public std::streambuf {
       if (line_.size() > kLongest) refuse("is longer than 65536 characters; expected a Wavefront OBJ file");
       if (!newline) continue;
       if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+      if (number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);  // UTF-8, says Windows
       return true;
     }
   }
@@ -207,7 +208,7 @@ ObjReader& reader(void* user) { return *static_cast<ObjReader*>(user); }
 
 }  // namespace
 
-TriangleSoup load_obj(const std::string& path, double scale) {
+LoadedMesh load_obj(const std::string& path, double scale) {
   MeshFile file(path);
   ObjLines lines(file);
   ObjReader out(lines, scale);
@@ -225,9 +226,10 @@ TriangleSoup load_obj(const std::string& path, double scale) {
   std::string warning, error;
   if (!tinyobj::LoadObjWithCallback(stream, on, &out, nullptr, &warning, &error))
     file.refuse("is not a Wavefront OBJ file: " + printable(error));
-  TriangleSoup soup = out.finish();
-  if (soup.triangles.empty()) file.refuse("has no faces; expected a Wavefront OBJ file with triangles");
-  return soup;
+  LoadedMesh loaded{out.finish(), {file.sha256(), {}}};
+  if (loaded.soup.triangles.empty())
+    file.refuse("has no faces; expected a Wavefront OBJ file with triangles");
+  return loaded;
 }
 
 }  // namespace nullcone

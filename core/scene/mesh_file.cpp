@@ -28,6 +28,7 @@ MeshFile::MeshFile(const std::string& path) : path_(path) {
 std::size_t MeshFile::read(char* to, std::size_t count) {
   const std::size_t got = std::fread(to, 1, count, file_.get());
   if (got < count && std::ferror(file_.get()) != 0) throw WorkError(path_, "cannot read the file");
+  hash_.add(std::string_view(to, got));
   return got;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/sha256.h"
+
 namespace nullcone {
 
 class MeshFile {
@@ -21,6 +23,8 @@ class MeshFile {
   /// Fewer bytes than `count` only at the end.
   std::size_t read(char* to, std::size_t count);
   std::string read_all();
+  /// Of all bytes that were read; to be asked for once, at the end.
+  std::string sha256() { return hash_.digits(); }
 
   [[noreturn]] void refuse(std::string_view message) const;
 
@@ -31,6 +35,7 @@ class MeshFile {
   std::string path_;
   std::size_t size_ = 0;
   std::unique_ptr<std::FILE, Close> file_;
+  Sha256 hash_;
 };
 
 }  // namespace nullcone

@@ -28,12 +28,15 @@ std::string ending_of(const std::string& path) {
 
 }  // namespace
 
-std::shared_ptr<const Mesh> read_mesh(JsonObject& shape, const std::string& scene) {
+std::shared_ptr<const Mesh> read_mesh(JsonObject& shape, const std::string& scene, MeshHashes& hashes) {
   const std::string path = file_beside(shape, "file", scene), ending = ending_of(path);
   if (ending != ".obj" && ending != ".gltf" && ending != ".glb")
     shape.refuse("file", "expected a name that ends in .obj, .gltf or .glb");
   const double scale = shape.number_or("scale", 1, 1e-100, kLargest);
-  TriangleSoup soup = ending == ".obj" ? load_obj(path, scale) : load_gltf(path, scale);
+  LoadedMesh loaded = ending == ".obj" ? load_obj(path, scale) : load_gltf(path, scale);
+  hashes = std::move(loaded.hashes);
+  check_hashes(shape, hashes);
+  TriangleSoup& soup = loaded.soup;
   const bool has_normals = !soup.normals.empty();
   const std::string normals = shape.word("normals", {"smooth", "flat"}, has_normals ? "smooth" : "flat");
   if (normals == "smooth" && !has_normals)

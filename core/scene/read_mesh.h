@@ -6,11 +6,13 @@
 
 #include "core/base/json.h"
 #include "core/scene/mesh.h"
+#include "core/scene/mesh_hashes.h"
 
 namespace nullcone {
 
 /// The mesh that a shape of type "mesh" describes; `scene` names the scene's file, and the mesh's stands in
-/// the same folder or below it. The caller reads `dome`, and finishes the shape.
-std::shared_ptr<const Mesh> read_mesh(JsonObject& shape, const std::string& scene);
+/// the same folder or below it. `hashes` becomes what it was read from. The caller reads `dome`, and finishes
+/// the shape.
+std::shared_ptr<const Mesh> read_mesh(JsonObject& shape, const std::string& scene, MeshHashes& hashes);
 
 }  // namespace nullcone

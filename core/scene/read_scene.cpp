@@ -42,10 +42,10 @@ const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDe
 }
 
 Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken,
-                   const std::string& place) {
+                   const std::string& place, MeshHashes& hashes) {
   Object out;
   out.name = object.name("name", taken);
-  out.shape = read_shape(object.object("shape"), metric, place);
+  out.shape = read_shape(object.object("shape"), metric, place, hashes);
   if (out.shape.type != ShapeType::sky) read_placing(object.object("placing"), out);
   out.opacity = object.number_or("opacity", 1, 0, 1);
   out.transparent = object.boolean("transparent", out.opacity < 1);
@@ -115,9 +115,10 @@ Scene read_scene(const std::string& text, const std::string& place,
   read_paths(root, metric, scene);
   std::set<std::string> names;
   std::array<bool, 3> sky{};
+  std::vector<MeshHashes> hashes;
   for (JsonObject& object : root.objects("objects")) {
     if (scene.objects.size() == 1000) root.refuse("objects", "expected at most 1000 objects");
-    scene.objects.push_back(read_object(object, metric, names, place));
+    scene.objects.push_back(read_object(object, metric, names, place, hashes.emplace_back()));
     if (scene.objects.back().shape.type != ShapeType::sky) continue;
     if (std::exchange(sky[scene.objects.back().shape.sky], true))
       object.refuse("shape/type", "is a second sky; expected one at most");
@@ -129,6 +130,8 @@ Scene read_scene(const std::string& text, const std::string& place,
   root.text("$schema", "");
   root.finish();
 
+  for (std::size_t i = 0; i < hashes.size(); ++i)
+    if (!hashes[i].file.empty()) pin_hashes(document["objects"][i]["shape"], hashes[i]);
   document.erase("$schema");  // for editors, and relative to the file
   scene.canonical = canonical_json(document);
   document.erase("look");

@@ -3,11 +3,14 @@
 #pragma once
 
 #include "core/base/json.h"
+#include "core/scene/mesh_hashes.h"
 #include "core/scene/read_scene.h"
 
 namespace nullcone {
 
-/// An object's `shape`; `scene` names the scene's file, beside which meshes are looked for.
-Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::string& scene);
+/// An object's `shape`; `scene` names the scene's file, beside which meshes are looked for;
+/// of a mesh, `hashes` becomes what it was read from.
+Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::string& scene,
+                 MeshHashes& hashes);
 
 }  // namespace nullcone

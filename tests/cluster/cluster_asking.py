@@ -236,11 +236,10 @@ def wrong_input(place, slurm):
     plain.write_text("")
     late = place.write_scene("late", camera={"type": "panorama", "resolution": place.RESOLUTION, "azimuth_deg": 24,
                                                           "fov_deg": {"keyframes": [[0, 220], [3, 720]]}})
-    (place.root / "rock.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     rock = place.write_scene("rock", objects=[{"name": "rock", "shape": {"type": "mesh", "file": "rock.obj"},
                                                "placing": {"type": "coordinate", "centre": [0.5, 0, 0]}}], look={})
     for text, *words in [
-            ("lacks the mesh 'rock.obj'", submit[0], rock, *submit[2:]), ("SCENE", "nullcone-submit"), ("--output", "nullcone-submit", scene), ("--output", *submit[:3], ""),
+            ("rock.obj: cannot open the file", submit[0], rock, *submit[2:]), ("SCENE", "nullcone-submit"), ("--output", "nullcone-submit", scene), ("--output", *submit[:3], ""),
             ("#", *submit[:3], place.root / "a#b"), ("is a file", *submit[:3], plain), ("none.json", submit[0], "none.json", *submit[2:]),
             ("broken.json", submit[0], broken, *submit[2:]), ("late.json", submit[0], late, *submit[2:]),
             ("there is no frame 24", *submit, "--frames", "0-24"), ("'x' is no frame", *submit, "--frames", "x"),

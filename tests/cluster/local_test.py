@@ -5,9 +5,11 @@ Usage: local_test.py TOOLS_DIR SOURCE_DIR [SCENARIO...]   (all of them; their na
 """
 import collections
 import concurrent.futures
+import hashlib
 import json
 import os
 import signal
+import struct
 import subprocess
 import time
 
@@ -68,6 +70,93 @@ def in_parts(place):
     whole["objects"][0]["shape"]["radius"] = -1
     (parts / "objects.json").write_text(json.dumps(whole["objects"]))
     ended(place, start(place, place.bin, folder, scene=parts / "scene.json"), 2, "objects.json (frame 0): /0/shape/radius: is -1")
+
+
+def meshes(place):
+    """Files of meshes are copied into the folder; others than those that were submitted are refused, there and beside the scene."""
+    made, folder = place.root / "made", place.root / "with meshes"
+    (made / "parts").mkdir(parents=True)
+    rock = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+    (made / "rock.obj").write_text(rock)
+    corners = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    triangle = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}],
+                "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}
+    (made / "parts/triangle.gltf").write_text(json.dumps(triangle))
+    (made / "parts/triangle.bin").write_bytes(corners)
+    objects = [{"name": name, "shape": {"type": "mesh", "file": file, "scale": 0.1},
+                "placing": {"type": "coordinate", "centre": [0.5, y, 0]}} for name, file, y in
+               [("rock", "rock.obj", 0), ("sail", "parts/triangle.gltf", 0.3)]]
+    scene = place.write_scene("made/scene", objects=objects, look={}, frames={"count": 3, "from": 0, "to": 1})
+
+    def submit(status=0, text="", *options):
+        ended(place, start(place, place.bin, folder, *options, scene=scene), status, text)
+
+    def payloads():
+        return {frame: place.payload(folder / f"data.{frame:04}.exr") for frame in range(3)}
+
+    submit()
+    for name in ("rock.obj", "parts/triangle.gltf", "parts/triangle.bin"):
+        place.check((folder / name).read_bytes() == (made / name).read_bytes(), f"meshes: {name} is not copied")
+    shapes = [entry["shape"] for entry in json.loads((folder / "scene.json").read_text())["objects"]]
+    digest = lambda name: hashlib.sha256((made / name).read_bytes()).hexdigest()
+    place.check.equal("meshes: hashes", shapes, [{**objects[0]["shape"], "sha256": digest("rock.obj")},
+        {**objects[1]["shape"], "sha256": digest("parts/triangle.gltf"),
+         "buffers": [{"file": "triangle.bin", "sha256": digest("parts/triangle.bin")}]}])
+    before = payloads()
+    times = {path: path.stat().st_mtime_ns for path in folder.glob("data.*.exr")}
+    copied = (folder / "rock.obj").stat().st_mtime_ns
+    submit()
+    place.check.equal("meshes: nothing changed", {path: path.stat().st_mtime_ns for path in folder.glob("data.*.exr")}, times)
+    place.check.equal("meshes: copied again", (folder / "rock.obj").stat().st_mtime_ns, copied)
+    place.run("nullcone-trace", folder / "scene.json", "--frame", "1", "-o", folder / "data.####.exr")
+
+    # Another mesh, or only another buffer, is another scene.
+    for name, other in (("rock.obj", rock.replace("v 0 0 1", "v 0 0 3").encode()), ("parts/triangle.bin", struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 3, 0))):
+        (made / name).write_bytes(other)
+        kept = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+        submit(2, "is of another scene; expected another folder, or --replace")
+        place.check.equal("meshes: refused", {path: path.read_bytes() for path in kept}, kept)
+        submit(0, "", "--replace")
+        place.check((folder / name).read_bytes() == other, f"meshes: {name} is not copied again")
+        now = payloads()
+        place.check(all(now[frame] != before[frame] for frame in now), f"meshes: frames are those of the other {name}")
+        before = now
+
+    # Changed in the folder after the submission: no job traces it.
+    (folder / "data.0001.exr").unlink()
+    (folder / "rock.obj").write_text(rock)
+    place.refused(2, "scene.json (frame 1): /objects/0/shape/sha256: the file 'rock.obj' is another",
+                  "nullcone-trace", folder / "scene.json", "--frame", "1", "-o", folder / "data.####.exr")
+    place.refused(2, "the file 'rock.obj' is another", "nullcone-submit", folder / "scene.json", "-o", folder, *HERE)
+    place.check(not (folder / "data.0001.exr").exists(), "meshes: a frame of another mesh was traced")
+    submit()  # the folder's copy is mended
+    place.check.equal("meshes: mended", payloads(), before)
+
+    # While the jobs are at work: no frame of the other mesh.
+    waits = place.root / "waits"
+    waits.touch()
+    tools = place.tools("meshes", f"[ $frame = 0 ] || while [ -e {waits} ]; do sleep 0.1; done")
+    child = start(place, tools, place.root / "changed", "--tries", "1", scene=scene)
+    place.check(waited(lambda: frames(place.root / "changed") == 1 and len(place.calls(tools)) == 3), "meshes: the first frame is not there")
+    (place.root / "changed/rock.obj").write_text(rock)
+    waits.unlink()
+    (made / "rock.obj").unlink()  # what was submitted is in the folder
+    ended(place, child, 2, "): /objects/0/shape/sha256: the file 'rock.obj' is another")
+    (made / "rock.obj").write_text(rock)
+    place.check.equal("meshes: frames of one mesh alone", frames(place.root / "changed"), 1)
+
+    # Nothing of the folder's own is written over.
+    triangle["buffers"][0]["uri"] = "cluster/001.array.sh"
+    (made / "cluster").mkdir()
+    (made / "cluster/001.array.sh").write_bytes(corners)
+    (made / "own.gltf").write_text(json.dumps(triangle))
+    objects[1]["shape"]["file"] = "own.gltf"
+    scene = place.write_scene("made/scene", objects=objects, look={}, frames={"count": 3, "from": 0, "to": 1})
+    folder = place.root / "own"
+    submit(2, "is a name of the folder's own")
+    place.check(not (folder / "cluster/001.array.sh").exists(), "meshes: a script is written over")
 
 
 def kills(place):
@@ -180,4 +269,4 @@ def locks(place):
 
 
 if __name__ == "__main__":
-    main([undisturbed, in_parts, kills, stopped, full_disk, hopeless, locks])
+    main([undisturbed, in_parts, meshes, kills, stopped, full_disk, hopeless, locks])

@@ -1,4 +1,18 @@
 """Documents that between them hold every entry that a scene or a look may have. Mutations begin here."""
+import hashlib
+import json
+
+# Files of meshes.
+FILES = {
+    "tetra.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 3//1 2//1\nf 1//1 2//1 4//1\nf 1//1 4//1 3//1\nf 2//1 3//1 4//1\n",
+    "triangle.bin": "\0" * 12 + "\0\0@@" + "\0" * 12 + "\0\0@@" + "\0" * 4,  # three corners, two of them 3 away
+    "triangle.gltf": json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}}]}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}),
+}
+HASHES = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in FILES.items()}
 
 STATIC = {"type": "static", "event": [0, 1, 2, 3]}
 FALLING = {"type": "geodesic", "event": [0, 4, 0, 0], "velocity": [0.5, 0, 0.25]}
@@ -83,7 +97,10 @@ SCENES = {
             {"name": "can", "shape": {"type": "cylinder", "radius": 0.5, "height": 2, "open": False, "dome": True}, "placing": THERE},
             {"name": "disk", "shape": {"type": "disk", "radius": 0.5}, "placing": THERE},
             {"name": "ring", "shape": {"type": "ring", "radius": 0.5, "inner_radius": 0.25}, "placing": THERE},
-            {"name": "rock", "shape": {"type": "mesh", "file": "tetra.obj", "scale": 0.5, "normals": "smooth", "dome": True}, "placing": THERE},
+            {"name": "rock", "shape": {"type": "mesh", "file": "tetra.obj", "sha256": HASHES["tetra.obj"], "scale": 0.5, "normals": "smooth", "dome": True},
+             "placing": THERE},
+            {"name": "stone", "shape": {"type": "mesh", "file": "triangle.gltf", "buffers": [{"file": "triangle.bin", "sha256": HASHES["triangle.bin"]}]},
+             "placing": THERE},
             {"name": "room", "shape": {"type": "box", "edges": [1, 2, 3], "dome": True}, "placing": THERE},
             {"name": "whole", "shape": {"type": "difference", "dome": False, "of": [
                 {"type": "box", "edges": [1, 1, 2], "centre": [0, 0, 1], "z_axis": [0, 1, 0], "y_axis": [1, 0, 0]},

@@ -43,6 +43,7 @@ UNSAID = [
     (r"more than 1000 spectra in one", "counts over many places"),
     (r"has no temperature", "keyframed reflectances"),
     (r"/include: cannot (open|read) |no such file|cannot open the file", "which files there are"),
+    (r"is another: expected SHA-256|the mesh has no buffer", "what is in files"),
     (r"expected a file that holds|: line \d+: ", "what is in files"),
 ]
 # The same by keyframes: which values numbers have at which times. Beside the range that the schema knows.
