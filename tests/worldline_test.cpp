@@ -90,13 +90,9 @@ Moving on_circle(double r, double v, double z, bool clockwise) {
   };
   char text[256];
   std::snprintf(text, sizeof text,
-                R"({"type": "circular", "event": [0, %.17g, 0, %.17g], "speed": %.17g, "clockwise": %s})", r, z,
-                v, clockwise ? "true" : "false");
-  return {text,
-          line,
-          {},
-          -400,
-          400};
+                R"({"type": "circular", "event": [0, %.17g, 0, %.17g], "speed": %.17g, "clockwise": %s})", r,
+                z, v, clockwise ? "true" : "false");
+  return {text, line, {}, -400, 400};
 }
 
 Moving on_hyperbola(const Vec3<double>& start, double a, const Vec3<double>& n) {
@@ -167,15 +163,15 @@ struct Figures {
 void compare(const Moving& moving, double radius, const Vec4<double>& at, Figures& worst) {
   const Vec4<L> o = convert<L>(at);
   const L tau_r = retarded(moving.line, o, moving.least, moving.most);
-  const Vec4<L> way = o - moving.line(tau_r).P;
-  const double distance = static_cast<double>(norm(spatial(way)));
+  const Vec4<L> from = o - moving.line(tau_r).P;
+  const double distance = static_cast<double>(norm(spatial(from)));
   if (distance < 3 * radius) return;
   char head[512];
   std::snprintf(head, sizeof head,
                 R"({"metric": {"name": "minkowski"}, "observer": {"event": [%.17g, %.17g, %.17g, %.17g]},
                 "camera": {"type": "perspective", "fov_deg": %.17g, "resolution": [24, 24], "forward": [%.17g, %.17g, %.17g], "up": [0.1, 0.2, 1]},)",
                 at[0], at[1], at[2], at[3], std::min(120.0, 120 / kPi * 3 * radius / distance),
-                -static_cast<double>(way[1]), -static_cast<double>(way[2]), -static_cast<double>(way[3]));
+                -static_cast<double>(from[1]), -static_cast<double>(from[2]), -static_cast<double>(from[3]));
   if (getenv("SHOW")) std::printf("%s %s\n", head, moving.json.c_str());
   const Traced traced =
       trace_text(head +
@@ -190,16 +186,21 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
     for (std::size_t x = 0; x < 24; ++x) {
       const Vec4<L> k = {{-1, traced.look(x, y)[0], traced.look(x, y)[1], traced.look(x, y)[2]}};
       const auto X_at = [&](L lambda, L guess) { return seen(moving.line, o + lambda * k, guess); };
-      // Where it is next to the centre: both move, so look at the distances along the ray.
+      // Where it is next to the centre: from where it passes the retarded place, to both sides.
+      const L step = L(0.05) * R / -product(moving.line(tau_r).u, k);
       L best = kFar, best_lambda = 0, tau = tau_r;
-      for (int i = -150; i <= 150; ++i) {
-        const L lambda = L(distance) + L(0.1) * i * R;
-        const Seen here = X_at(lambda, tau);
-        const L d = norm(here.X);
-        if (d < best) best = d, best_lambda = lambda, tau = here.tau;
+      for (const L way : {step, -step}) {
+        L guess = tau_r;
+        for (int i = 0; i < 300; ++i) {
+          const Seen here = X_at(L(distance) + i * way, guess);
+          const L d = norm(here.X);
+          if (d < best) best = d, best_lambda = L(distance) + i * way, tau = here.tau;
+          if (!(d < 5 * R)) break;
+          guess = here.tau;
+        }
       }
-      for (L step = L(0.1) * R; step > 1e-12L * R; step *= L(0.5))
-        for (const L lambda : {best_lambda - step, best_lambda + step})
+      for (L part = step; part > 1e-12L * step; part *= L(0.5))
+        for (const L lambda : {best_lambda - part, best_lambda + part})
           if (const L d = norm(X_at(lambda, tau).X); d < best) best = d, best_lambda = lambda;
       const bool kinked =
           std::ranges::any_of(moving.kinks, [&](L kink) { return std::fabs(tau - kink) < 12 * R; });
@@ -214,8 +215,8 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
       ++worst.hits;
       L in = best_lambda, out = best_lambda, tau_in = tau;
       for (int i = 0; i < 400 && in == out; ++i) {  // back to where it comes in
-        const Seen back = X_at(out - L(0.05) * R, tau_in);
-        const L before = out - L(0.05) * R;
+        const L before = out - step;
+        const Seen back = X_at(before, tau_in);
         norm(back.X) > R ? in = before : in = out = before;
         tau_in = back.tau;
       }

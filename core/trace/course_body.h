@@ -134,11 +134,6 @@ struct TubePart {
 /// What a search may conclude from an event alone.
 template <class S>
 struct Nearby {
-  /// Whether the object may be met where it seems to be.
-  Mask<S> is_trusted(const Vec3<S>& X, const S& at_tau) const {
-    return (norm(X) < reach) & (abs(at_tau - tau) <= S(2.0) * half_tau + S(4.0) * radius);
-  }
-
   S clearance;                ///< in lambda: the object is not met before; <= 0 where it may be there
   S tau;                      ///< a guess of its proper time
   S half_tau, radius, reach;  ///< of that part of the tube

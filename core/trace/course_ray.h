@@ -80,6 +80,15 @@ struct StepWay {
   }
 };
 
+/// Whether an object may be met where it seems to be.
+template <class S>
+Mask<S> is_trusted(const Nearby<S>& nearby, const Aboard<S>& found) {
+  const S size = norm(found.X);
+  return (size < nearby.reach) &
+         (abs(found.tau - nearby.tau) <= S(2.0) * nearby.half_tau + S(4.0) * nearby.radius) &
+         (abs(found.late) <= S(1e-6) * (size + nearby.radius));
+}
+
 /// How fast a ray moves past an object at its proper time tau: its frequency there.
 template <Metric M, class S>
 S frequency(const CourseBody<M>& body, const S& tau, const Vec4<S>& tangent) {
@@ -109,8 +118,7 @@ struct CourseRay {
     if (all(out.clearance > S(0.0))) return out;
     const Aboard<S> first = aboard(*body, here.event, here.tangent, nearby.tau);
     const auto& line = body->line;
-    auto there = nearby.is_trusted(first.X, first.tau) & (first.tau >= S(line.first())) &
-                 (first.tau <= S(line.last()));
+    auto there = is_trusted(nearby, first) & (first.tau >= S(line.first())) & (first.tau <= S(line.last()));
 
     const S speed = max(norm(first.slope), S(1e-300)), pace = max(abs(first.tau_slope), S(1e-300));
     S length = S(0.5) * max(norm(first.X) - S(ball), S(ball)) / speed;
@@ -124,14 +132,15 @@ struct CourseRay {
       const Underway<S> next = way.at(lambda + delta);
       const Aboard<S> on = aboard(*body, next.event, next.tangent, first.tau + delta * first.tau_slope);
       X[k] = on.X, slope[k] = on.slope;
-      there = there & (norm(on.X) < S(kFar)) & (norm(on.slope) < S(kFar));
+      there = there & (norm(on.X) < S(2.0) * (nearby.reach + S(ball))) &
+              (abs(on.late) <= S(1e-6) * (norm(on.X) + S(ball)));
     }
     const S clearance = out.clearance;
     out = Curve<S, n>(X, slope, length).at(S(0.0));
     out.X = first.X, out.slope = first.slope;
     // Where its rest frame does not reach, or before and behind its time, there is no object, nor soon.
     const S past =
-        S(0.5) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
+        S(0.25) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
     const S soon = min(min(past, S(0.2) * nearby.radius / here.speed), here.valid);
     out.clearance = select(there | (clearance > S(0.0)), clearance, soon);
     return out;

@@ -82,6 +82,7 @@ template <class S>
 struct Aboard {
   Vec3<S> X, slope;
   S tau, tau_slope;
+  S late;  ///< what Newton's method has left; large where there is no such proper time nearby
 };
 
 /// Newton's method for the proper time, from a guess, and implicit differentiation.
@@ -92,7 +93,7 @@ Aboard<S> aboard(const Body& body, const Vec4<S>& event, const Vec4<S>& tangent,
   const auto x = Vec4<D>::map([&](std::size_t i) { return D(event[i], Vec<S, 2>{{tangent[i], S(0.0)}}); });
   const auto [late, X] = body.local(x, D::variable(tau, 1));
   Aboard<S> out;
-  out.tau = tau, out.tau_slope = -(late.d[0] / late.d[1]);
+  out.tau = tau, out.tau_slope = -(late.d[0] / late.d[1]), out.late = late.v;
   for (std::size_t i = 0; i < 3; ++i) {
     out.X[i] = X[i].v;
     out.slope[i] = X[i].d[0] + X[i].d[1] * out.tau_slope;

@@ -50,7 +50,7 @@ struct CourseMap {
   Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
     const Nearby<S> nearby = body.tube.near(event, S(1.0), S(1.0));
     const Aboard<S> out = aboard(body, event, tangent, nearby.tau);
-    const auto there = (nearby.clearance <= S(0.0)) & nearby.is_trusted(out.X, out.tau);
+    const auto there = (nearby.clearance <= S(0.0)) & is_trusted(nearby, out);
     return {select(there, out.X, Vec3<S>{{S(kOutOfReach), S(0.0), S(0.0)}}), out.slope};
   }
 

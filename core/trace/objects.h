@@ -65,13 +65,12 @@ bool moves_timelike(const M&, const CourseBody<M>& body, double ball) {
 /// Where an event is in the object's frame; far away where that does not reach.
 template <class Body>
 Vec3<double> position_of(const Body& body, const Vec4<double>& event) {
-  const double tau = local_time(body, event, body.first_guess(event));
-  const Vec3<double> out = body.local(event, tau).second;
+  const Aboard<double> out = aboard(body, event, Vec4<double>{}, body.first_guess(event));
   if constexpr (requires { body.tube; }) {
     const Nearby<double> nearby = body.tube.near(event, 1.0, 1.0);
-    if (nearby.clearance > 0 || !nearby.is_trusted(out, tau)) return {{kOutOfReach, 0, 0}};
+    if (nearby.clearance > 0 || !is_trusted(nearby, out)) return {{kOutOfReach, 0, 0}};
   }
-  return out;
+  return out.X;
 }
 
 /// Why an object cannot be traced for an observer at an event of the object's chart; nothing if it can.
