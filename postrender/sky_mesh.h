@@ -1,0 +1,60 @@
+// The map from the picture to the directions on a sky, as a mesh of vertices in rows: one a ray, and beyond
+// the edges of the picture, or of the faces of a cube map, as the map goes on there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/camera.h"
+#include "core/record/dataset.h"
+#include "postrender/stars.h"
+
+namespace nullcone::postrender {
+
+/// As far as the manifest tells: nothing without its `setting`.
+std::optional<Camera> camera_of(const Manifest& manifest);
+
+struct SkyVertex {
+  Direction direction;
+  double latitude, longitude;
+  float shift;
+  std::uint32_t ray;  ///< in the grid of samples; beyond the edges the nearest
+  bool on_sky;        ///< else the other entries mean nothing
+};
+
+class SkyMesh {
+ public:
+  /// `samples` as in find_star_images(); `beyond` in pixels.
+  SkyMesh(const Dataset& samples, const Manifest& picture, std::uint32_t id, double beyond);
+
+  struct Column {
+    double x;     ///< in pixels of the picture
+    int ray;      ///< column in the grid of samples; -1: continued from the two columns beside it
+    int inwards;  ///< where it is continued from: +1 or -1
+    bool joined;  ///< to the next column
+    std::int32_t left, right;  ///< columns of the picture that belong to its face
+  };
+  const std::vector<Column>& columns() const { return columns_; }
+  std::size_t rows() const { return y_.size(); }
+  double y(std::size_t row) const { return y_[row]; }
+  bool wraps() const { return wraps_; }
+
+  /// The vertices of a row, one a column.
+  void read_row(std::size_t row, std::vector<SkyVertex>& out) const;
+
+ private:
+  void add_columns(int first, int last, double beyond);
+  void read_rays(int row, std::vector<SkyVertex>& out) const;
+  SkyVertex vertex_of(std::uint32_t ray) const;
+
+  const Dataset& samples_;
+  std::uint32_t id_;
+  int per_pixel_;
+  bool wraps_;
+  double beyond_;
+  std::vector<Column> columns_;
+  std::vector<double> y_;  ///< of the rows, in lines of the window
+};
+
+}  // namespace nullcone::postrender
