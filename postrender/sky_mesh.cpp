@@ -27,6 +27,19 @@ SkyVertex continued(const SkyVertex& a, const SkyVertex& b, double steps) {
   return out;
 }
 
+/// All in one direction, that of their mean.
+void join(std::vector<SkyVertex>& row) {
+  if (!std::ranges::all_of(row, &SkyVertex::on_sky)) return;
+  Direction mean{};
+  for (const SkyVertex& vertex : row)
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += vertex.direction[i];
+  const double length = std::hypot(mean[0], mean[1], mean[2]);
+  for (SkyVertex& vertex : row) {
+    for (std::size_t i = 0; i < 3; ++i) vertex.direction[i] = mean[i] / length;
+    set_angles(vertex);
+  }
+}
+
 bool is_round_panorama(const Camera& camera) {
   return camera.type == CameraType::panorama && camera.fov_horizontal > 2 * std::numbers::pi * (1 - 1e-9);
 }
@@ -58,30 +71,38 @@ SkyMesh::SkyMesh(const Dataset& samples, const Manifest& picture, std::uint32_t 
       id_(id),
       per_pixel_(picture.samples),
       wraps_(false),
-      beyond_(beyond * picture.samples + 0.5) {
+      ends_in_poles_(false),
+      out_{0.5, 0.5 + beyond * picture.samples} {
   // Step 1: columns, in pieces that are continuous.
   const std::optional<Camera> camera = camera_of(picture);
   const int width = samples.manifest.width, lines = samples.manifest.lines;
   wraps_ = camera && (is_round_panorama(*camera) || camera->type == CameraType::tetrahedron_map);
+  ends_in_poles_ =
+      camera && is_round_panorama(*camera) && camera->fov_vertical > std::numbers::pi * (1 - 1e-9);
   if (wraps_) {
     for (int i = 0; i <= width; ++i)
-      columns_.push_back({(i + 0.5) / per_pixel_, i % width, 0, i < width, 0, picture.width});
+      columns_.push_back({(i + 0.5) / per_pixel_, i % width, 0, 0, 0, i < width, 0, picture.width});
   } else {
     const int faces = camera && camera->type == CameraType::cube_map && width % 6 == 0 ? 6 : 1;
     for (int face = 0; face < faces; ++face)
       add_columns(face * (width / faces), (face + 1) * (width / faces), beyond);
   }
-  // Step 2: rows; the first and the last go beyond the picture.
-  y_.push_back((0.5 - beyond_) / per_pixel_);
+  // Step 2: rows; the outer ones go beyond the picture.
+  const double height = static_cast<double>(lines) / per_pixel_;
+  y_ = {-beyond, 0};
   for (int j = 0; j < lines; ++j) y_.push_back((j + 0.5) / per_pixel_);
-  y_.push_back((lines - 0.5 + beyond_) / per_pixel_);
+  y_.insert(y_.end(), {height, height + beyond});
 }
 
 void SkyMesh::add_columns(int first, int last, double beyond) {
   const std::int32_t left = first / per_pixel_, right = last / per_pixel_;
-  columns_.push_back({left - beyond, -1, 1, true, left, right});
-  for (int i = first; i < last; ++i) columns_.push_back({(i + 0.5) / per_pixel_, i, 0, true, left, right});
-  columns_.push_back({right + beyond, -1, -1, false, left, right});
+  const int next = std::min(first + 1, last - 1), before = std::max(last - 2, first);
+  columns_.push_back({left - beyond, -1, first, next, out_[1], true, left, right});
+  columns_.push_back({static_cast<double>(left), -1, first, next, out_[0], true, left, right});
+  for (int i = first; i < last; ++i)
+    columns_.push_back({(i + 0.5) / per_pixel_, i, 0, 0, 0, true, left, right});
+  columns_.push_back({static_cast<double>(right), -1, last - 1, before, out_[0], true, left, right});
+  columns_.push_back({right + beyond, -1, last - 1, before, out_[1], false, left, right});
 }
 
 SkyVertex SkyMesh::vertex_of(std::uint32_t ray) const {
@@ -104,28 +125,27 @@ SkyVertex SkyMesh::vertex_of(std::uint32_t ray) const {
 void SkyMesh::read_rays(int row, std::vector<SkyVertex>& out) const {
   out.resize(columns_.size());
   const auto width = static_cast<std::size_t>(samples_.manifest.width);
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    if (columns_[i].ray >= 0)
-      out[i] = vertex_of(static_cast<std::uint32_t>(static_cast<std::size_t>(row) * width +
-                                                    static_cast<std::size_t>(columns_[i].ray)));
+  const auto at = [&](int column) {
+    return vertex_of(
+        static_cast<std::uint32_t>(static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)));
+  };
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (columns_[i].ray >= 0) continue;
-    const auto at = [&](int steps) -> const SkyVertex& {
-      return out[static_cast<std::size_t>(static_cast<int>(i) + steps * columns_[i].inwards)];
-    };
-    const bool alone = columns_[i].left + 1 == columns_[i].right && per_pixel_ == 1;
-    out[i] = continued(at(1), at(alone ? 1 : 2), beyond_);
+    const Column& column = columns_[i];
+    out[i] = column.ray >= 0 ? at(column.ray) : continued(at(column.first), at(column.second), column.steps);
   }
 }
 
 void SkyMesh::read_row(std::size_t row, std::vector<SkyVertex>& out) const {
-  const int lines = samples_.manifest.lines, ray_row = static_cast<int>(row) - 1;
-  if (ray_row >= 0 && ray_row < lines) return read_rays(ray_row, out);
-  const int edge = ray_row < 0 ? 0 : lines - 1, next = std::clamp(ray_row < 0 ? 1 : lines - 2, 0, lines - 1);
+  const int lines = samples_.manifest.lines, at = static_cast<int>(row) - static_cast<int>(kOuter);
+  if (at >= 0 && at < lines) return read_rays(at, out);
+  const bool above = at < 0;
+  const int edge = above ? 0 : lines - 1, next = above ? std::min(1, lines - 1) : std::max(lines - 2, 0);
   std::vector<SkyVertex> inner;
   read_rays(edge, out);
   read_rays(next, inner);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = continued(out[i], inner[i], beyond_);
+  const bool border = row != 0 && row + 1 != rows();
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = continued(out[i], inner[i], out_[border ? 0 : 1]);
+  if (border && ends_in_poles_) join(out);
 }
 
 }  // namespace nullcone::postrender

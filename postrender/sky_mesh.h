@@ -29,10 +29,11 @@ class SkyMesh {
   SkyMesh(const Dataset& samples, const Manifest& picture, std::uint32_t id, double beyond);
 
   struct Column {
-    double x;     ///< in pixels of the picture
-    int ray;      ///< column in the grid of samples; -1: continued from the two columns beside it
-    int inwards;  ///< where it is continued from: +1 or -1
-    bool joined;  ///< to the next column
+    double x;           ///< in pixels of the picture
+    int ray;            ///< column in the grid of samples; -1: continued
+    int first, second;  ///< where it is continued from, the outer one first: columns in the grid of samples
+    double steps;       ///< and how far, in rays
+    bool joined;        ///< to the next column
     std::int32_t left, right;  ///< columns of the picture that belong to its face
   };
   const std::vector<Column>& columns() const { return columns_; }
@@ -42,6 +43,8 @@ class SkyMesh {
 
   /// The vertices of a row, one a column.
   void read_row(std::size_t row, std::vector<SkyVertex>& out) const;
+  /// Rows beyond the outermost rays, on each side: at the border, and as far beyond as was asked for.
+  static constexpr std::size_t kOuter = 2;
 
  private:
   void add_columns(int first, int last, double beyond);
@@ -51,10 +54,10 @@ class SkyMesh {
   const Dataset& samples_;
   std::uint32_t id_;
   int per_pixel_;
-  bool wraps_;
-  double beyond_;
+  bool wraps_, ends_in_poles_;  ///< the upper and the lower border of the picture are one direction each
   std::vector<Column> columns_;
-  std::vector<double> y_;  ///< of the rows, in lines of the window
+  std::vector<double> y_;      ///< of the rows, in lines of the window
+  std::array<double, 2> out_;  ///< how far the border lies beyond the outermost rays, and the end; in rays
 };
 
 }  // namespace nullcone::postrender

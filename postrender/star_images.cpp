@@ -3,92 +3,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "postrender/sky_mesh.h"
+#include "postrender/sky_triangle.h"
 
 namespace nullcone::postrender {
 
 namespace {
-
-double dot(const Direction& a, const Direction& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-/// Exactly -cross(b, a).
-Direction cross(const Direction& a, const Direction& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double square_distance(const Direction& a, const Direction& b) {
-  const Direction d = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return dot(d, d);
-}
-
-/// A corner of a triangle, in pixels of the picture.
-struct Corner {
-  const SkyVertex* vertex;
-  double x, y;
-};
-
-/// A triangle of neighbouring rays; corners in the order of the mesh. `clockwise` in that order.
-class Triangle {
- public:
-  Triangle(const Corner& a, const Corner& b, const Corner& c, bool clockwise)
-      : corners_{a, b, c}, clockwise_(clockwise) {
-    if (!a.vertex->on_sky || !b.vertex->on_sky || !c.vertex->on_sky) return;
-    const double ab = square_distance(direction(0), direction(1)),
-                 bc = square_distance(direction(1), direction(2)),
-                 ac = square_distance(direction(0), direction(2));
-    square_reach_ = std::max(ab, ac);
-    seen_ = std::max(square_reach_, bc) <= kLargestStep * kLargestStep;
-  }
-  /// Whether it shows a piece of the sky.
-  bool seen() const { return seen_; }
-  /// The square of the longest chord from the first corner.
-  double square_reach() const { return seen_ ? square_reach_ : 0; }
-  const Corner& corner(std::size_t i) const { return corners_[i]; }
-
-  /// To be called before those that follow.
-  void prepare() {
-    if (!seen_) return;
-    edges_ = {cross(direction(0), direction(1)), cross(direction(1), direction(2)),
-              cross(direction(0), direction(2))};
-    volume_ = dot(direction(2), edges_[0]);
-    seen_ = volume_ != 0;
-  }
-  /// Van Oosterom and Strackee 1983, "The solid angle of a plane triangle", eq. 8.
-  double solid_angle() const {
-    const Direction &A = direction(0), &B = direction(1), &C = direction(2);
-    return 2 * std::atan2(std::abs(volume_), 1 + dot(A, B) + dot(B, C) + dot(A, C));
-  }
-  /// In pixels.
-  double area() const {
-    const auto& [a, b, c] = corners_;
-    return 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-  }
-
-  /// Whether the star is inside, and the weights of the corners. What lies on an edge belongs to one of its
-  /// two triangles, what lies on a corner to one of its six: the one that goes along the edge as the mesh
-  /// does.
-  bool holds(const Direction& star, std::array<double, 3>& weights) const {
-    const double ab = dot(edges_[0], star), bc = dot(edges_[1], star), ac = dot(edges_[2], star);
-    const bool inside = clockwise_ ? within(ab, true) && within(bc, true) && within(-ac, false)
-                                   : within(ac, true) && within(-bc, false) && within(-ab, false);
-    if (!inside) return false;
-    const double sum = std::abs(ab) + std::abs(bc) + std::abs(ac);
-    if (!(sum > 0)) return false;
-    weights = {std::abs(bc) / sum, std::abs(ac) / sum, std::abs(ab) / sum};
-    return true;
-  }
-
- private:
-  const Direction& direction(std::size_t i) const { return corners_[i].vertex->direction; }
-  /// Of a side that is gone along clockwise in the picture; of mirrored images that is the other way round.
-  bool within(double side, bool along) const {
-    if (side == 0) return along;
-    return (side > 0) == (clockwise_ != (volume_ < 0));
-  }
-
-  std::array<Corner, 3> corners_;
-  std::array<Direction, 3> edges_{};  ///< each from the corner that stands first in the mesh
-  double volume_ = 0, square_reach_ = 0;
-  bool clockwise_, seen_ = false;
-};
 
 /// Solid angle that a pixel of the picture sees, about a place in it.
 double pixel_sr(const Camera& camera, double x, double y, double left, double right) {
@@ -103,57 +22,104 @@ double pixel_sr(const Camera& camera, double x, double y, double left, double ri
   return std::sqrt(dot(area, area)) / (4 * kStep * kStep);
 }
 
-/// Finds images in one row of the mesh after the other.
+/// Rows of the mesh: that above a row of triangles, its own two, and that below; null where there is none.
+using Rows = std::array<const std::vector<SkyVertex>*, 4>;
+
+/// Finds images in one row of triangles.
 class Finder {
  public:
   Finder(const SkyMesh& mesh, const Manifest& picture, const StarField& field)
       : mesh_(mesh), camera_(camera_of(picture)), first_line_(picture.first_line), field_(field) {}
 
-  /// Of the triangles between two rows of vertices.
-  void find(std::size_t row, const std::vector<SkyVertex>& upper, const std::vector<SkyVertex>& lower,
-            std::vector<StarImage>& out) const {
+  /// Of the triangles between rows `row` and `row` + 1, which are the middle ones of `rows`.
+  void find(std::size_t row, const Rows& rows, std::vector<StarImage>& out) const {
     const auto& columns = mesh_.columns();
-    const double y0 = mesh_.y(row), y1 = mesh_.y(row + 1);
+    const auto corner = [&](std::size_t down, std::size_t column) {
+      return Corner{&(*rows[1 + down])[column], columns[column].x, mesh_.y(row + down), row + down, column};
+    };
     for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
       if (!columns[i].joined) continue;
-      const double x0 = columns[i].x, x1 = columns[i + 1].x;
-      const Corner a{&upper[i], x0, y0}, b{&upper[i + 1], x1, y0}, c{&lower[i], x0, y1},
-          d{&lower[i + 1], x1, y1};
+      const Corner a = corner(0, i), b = corner(0, i + 1), c = corner(1, i), d = corner(1, i + 1);
       if (a.vertex->on_sky && d.vertex->on_sky)
-        find({Triangle(a, b, d, true), Triangle(a, c, d, false)}, columns[i], out);
+        find(Quad{row, rows, {Triangle(a, b, d, true), Triangle(a, c, d, false)}}, out);
     }
   }
 
  private:
-  void find(std::array<Triangle, 2> triangles, const SkyMesh::Column& column,
-            std::vector<StarImage>& out) const {
+  struct Quad {
+    std::size_t row;
+    const Rows& rows;
+    std::array<Triangle, 2> triangles;
+  };
+
+  void find(Quad quad, std::vector<StarImage>& out) const {
     constexpr double kChordToAngle = 1.02;  // within kLargestStep
-    const double square = std::max(triangles[0].square_reach(), triangles[1].square_reach());
+    const double square = std::max(quad.triangles[0].square_reach(), quad.triangles[1].square_reach());
     if (square == 0) return;
-    const SkyVertex& at = *triangles[0].corner(0).vertex;
+    const SkyVertex& at = *quad.triangles[0].corner(0).vertex;
     bool prepared = false;
     field_.near(at.latitude, at.longitude, kChordToAngle * std::sqrt(square) + 1e-6,
                 [&](std::uint32_t first, std::uint32_t last) {
                   if (!prepared)
-                    for (Triangle& triangle : triangles) triangle.prepare();
+                    for (Triangle& triangle : quad.triangles) triangle.prepare();
                   prepared = true;
-                  for (std::uint32_t number = first; number < last; ++number)
-                    test(triangles, column, number, out);
+                  for (std::uint32_t number = first; number < last; ++number) test(quad, number, out);
                 });
   }
 
-  void test(const std::array<Triangle, 2>& triangles, const SkyMesh::Column& column, std::uint32_t number,
-            std::vector<StarImage>& out) const {
+  void test(const Quad& quad, std::uint32_t number, std::vector<StarImage>& out) const {
     const auto& p = field_.stars()[number].direction;
     const Direction star = {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
     std::array<double, 3> weights;
-    for (const Triangle& triangle : triangles)
+    for (const Triangle& triangle : quad.triangles)
       if (triangle.seen() && triangle.holds(star, weights))
-        out.push_back(image_of(triangle, column, number, weights));
+        out.push_back(image_of(quad, triangle, number, weights));
   }
 
-  StarImage image_of(const Triangle& triangle, const SkyMesh::Column& column, std::uint32_t number,
+  /// Solid angle on the sky that a pixel about a corner covers, by the corner's neighbours, negative where
+  /// the image is mirrored; 0 where it has not all of them.
+  double density_at(const Quad& quad, const Corner& corner) const {
+    const auto& columns = mesh_.columns();
+    const std::size_t rank = corner.row - quad.row + 1, last = columns.size() - 1;
+    const std::vector<SkyVertex>*above = quad.rows[rank - 1], *below = quad.rows[rank + 1];
+    const std::size_t i = corner.column, west = i > 0 ? i - 1 : last - 1, east = i < last ? i + 1 : 1;
+    const bool inner =
+        mesh_.wraps() || (columns[i].ray >= 0 && columns[west].ray >= 0 && columns[east].ray >= 0);
+    if (!inner || corner.row <= SkyMesh::kOuter || corner.row + SkyMesh::kOuter + 1 >= mesh_.rows()) return 0;
+    const std::vector<SkyVertex>& here = *quad.rows[rank];
+    const std::array<const SkyVertex*, 4> around = {&here[west], &here[east], &(*above)[i], &(*below)[i]};
+    for (const SkyVertex* one : around)
+      if (!one->on_sky ||
+          square_distance(one->direction, corner.vertex->direction) > kLargestStep * kLargestStep)
+        return 0;
+    Direction across, along;
+    for (std::size_t k = 0; k < 3; ++k) {
+      across[k] = around[1]->direction[k] - around[0]->direction[k];
+      along[k] = around[3]->direction[k] - around[2]->direction[k];
+    }
+    const double pixels =
+        2 * (mesh_.y(corner.row + 1) - mesh_.y(corner.row));  // both ways: rays stand on squares
+    return dot(corner.vertex->direction, cross(across, along)) / (pixels * pixels);
+  }
+
+  /// Pixels a unit of solid angle at a place in a triangle. Its own mean is right to the first order in its
+  /// size; linear between what is found at its corners, to the second. But not across folds of the map, and
+  /// not where rays hardly resolve it.
+  double pixels_a_steradian(const Quad& quad, const Triangle& triangle,
+                            const std::array<double, 3>& weights) const {
+    const double mean = triangle.solid_angle() / triangle.area();
+    double here = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double density = triangle.sense() * density_at(quad, triangle.corner(i));
+      if (!(density > 0.5 * mean && density < 2 * mean)) return 1 / mean;
+      here += weights[i] * density;
+    }
+    return 1 / here;
+  }
+
+  StarImage image_of(const Quad& quad, const Triangle& triangle, std::uint32_t number,
                      const std::array<double, 3>& weights) const {
+    const SkyMesh::Column& column = mesh_.columns()[triangle.corner(0).column];
     StarImage out{};
     double x = 0, y = 0, shift = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -164,7 +130,7 @@ class Finder {
       out.corners[i] = corner.vertex->ray;
       out.weights[i] = static_cast<float>(weights[i]);
     }
-    const double area = triangle.area() / triangle.solid_angle();
+    const double area = pixels_a_steradian(quad, triangle, weights);
     out.x = static_cast<float>(x);
     out.y = static_cast<float>(y);
     out.shift = static_cast<float>(shift);
@@ -196,14 +162,19 @@ StarImages find_star_images(const Dataset& samples, const Manifest& picture, std
   std::vector<std::vector<StarImage>> found(bands);
   std::vector<std::size_t> count(rows);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bands, 1), [&](const auto& range) {
-    std::vector<SkyVertex> upper, lower;
+    std::array<std::vector<SkyVertex>, 4> kept;  // row r in place r modulo 4
     for (std::size_t band = range.begin(); band < range.end(); ++band) {
-      mesh.read_row(band * kBand, lower);
-      for (std::size_t row = band * kBand; row < std::min(rows, (band + 1) * kBand); ++row) {
-        upper.swap(lower);
-        mesh.read_row(row + 1, lower);
+      const auto read = [&](std::size_t row) {
+        if (row < mesh.rows()) mesh.read_row(row, kept[row % 4]);
+      };
+      const std::size_t first = band * kBand;
+      for (std::size_t row = first - std::min<std::size_t>(first, 1); row < first + 2; ++row) read(row);
+      for (std::size_t row = first; row < std::min(rows, first + kBand); ++row) {
+        read(row + 2);
+        const Rows around = {row > 0 ? &kept[(row + 3) % 4] : nullptr, &kept[row % 4], &kept[(row + 1) % 4],
+                             row + 2 < mesh.rows() ? &kept[(row + 2) % 4] : nullptr};
         const std::size_t before = found[band].size();
-        finder.find(row, upper, lower, found[band]);
+        finder.find(row, around, found[band]);
         count[row] = found[band].size() - before;
       }
     }

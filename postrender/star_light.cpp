@@ -19,13 +19,13 @@ struct Spread {
   static constexpr double kReach = 4;  ///< standard deviations
   static constexpr int kMost = 2 * 4 * 4 + 3;
   int first = 0, count = 0;
-  std::array<float, kMost> part;
+  std::array<float, kMost> part{};
 
   Spread(double at, double sigma) {
     first = static_cast<int>(std::floor(at - kReach * sigma));
     count = static_cast<int>(std::floor(at + kReach * sigma)) + 1 - first;
     const double scale = 1 / (sigma * std::numbers::sqrt2);
-    std::array<double, kMost + 1> below;
+    std::array<double, kMost + 1> below{};
     for (int i = 0; i <= count; ++i) below[static_cast<std::size_t>(i)] = std::erf((first + i - at) * scale);
     const double all = below[static_cast<std::size_t>(count)] - below[0];
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)

@@ -125,7 +125,8 @@ TEST(CubeMap, AgreesWithTheLatitudeLongitudePictureThatItWasMadeOf) {
     }
   write_exr(folder.file("map.exr"), kWide, kHigh, map);
   // Step 2: seen by a cube camera; its picture is the sky of another scene.
-  const std::string direct = R"({"objects":{"sky":{"texture":{"type":"image","file":"map.exr"}}}})";
+  const std::string direct =
+      R"({"objects":{"sky":{"texture":{"type":"image","file":"map.exr","filter":"bilinear"}}}})";
   const Image cube =
       picture(sky_dataset(of_all_directions(CameraType::cube_map, 6 * 96, 96)), direct, folder.path());
   write_exr(folder.file("strip.exr"), 6 * 96, 96, cube.exposed);
@@ -136,8 +137,13 @@ TEST(CubeMap, AgreesWithTheLatitudeLongitudePictureThatItWasMadeOf) {
         return R"({"objects":{"sky":{"texture":{)" + texture + R"(,"filter":")" + filter + "\"" + turn +
                "}}}}";
       };
+      // At the poles averages over the longer side of a footprint blur maps by latitude and longitude: not
+      // there.
+      const bool averages = std::string(filter) == "mipmap";
+      if (averages && *turn != 0) continue;
       for (const Camera& camera :
            {perspective(90, 60, 100), of_all_directions(CameraType::panorama, 120, 60)}) {
+        if (averages && camera.type != CameraType::perspective) continue;
         const Image a =
             picture(sky_dataset(camera), look(R"("type":"image","file":"map.exr")"), folder.path());
         const Image b =
@@ -147,7 +153,7 @@ TEST(CubeMap, AgreesWithTheLatitudeLongitudePictureThatItWasMadeOf) {
           worst = std::max(worst, difference(a.exposed[i], b.exposed[i]));
         // Averages over footprints of 3 degrees, which are not the same on both maps, differ in the second
         // order.
-        EXPECT_LT(worst, std::string(filter) == "bilinear" ? 1e-3 : 6e-3) << filter << turn << camera.width;
+        EXPECT_LT(worst, averages ? 6e-3 : 1e-3) << filter << turn << camera.width;
       }
     }
 }

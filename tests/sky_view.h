@@ -91,6 +91,8 @@ inline Dataset sky_dataset(const Camera& camera, int samples = 1,
       }
       hits.offset.push_back(hits.Z.size());
     }
+  for (auto* column : {&out.rays.status, &out.rays.steps}) column->resize(manifest.rays());
+  for (auto* column : {&out.rays.error, &out.rays.drift}) column->resize(manifest.rays());
   return out;
 }
 
