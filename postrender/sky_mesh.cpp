@@ -1,16 +1,11 @@
 #include "postrender/sky_mesh.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace nullcone::postrender {
 
 namespace {
-
-void set_angles(SkyVertex& vertex) {
-  const auto [x, y, z] = vertex.direction;
-  vertex.latitude = std::asin(std::clamp(z, -1.0, 1.0));
-  vertex.longitude = std::atan2(y, x);
-}
 
 /// The map goes on as it came from `b` to `a`, by `steps` more.
 SkyVertex continued(const SkyVertex& a, const SkyVertex& b, double steps) {
@@ -23,7 +18,6 @@ SkyVertex continued(const SkyVertex& a, const SkyVertex& b, double steps) {
     square += out.direction[i] * out.direction[i];
   }
   for (double& component : out.direction) component /= std::sqrt(square);
-  set_angles(out);
   return out;
 }
 
@@ -34,10 +28,8 @@ void join(std::vector<SkyVertex>& row) {
   for (const SkyVertex& vertex : row)
     for (std::size_t i = 0; i < 3; ++i) mean[i] += vertex.direction[i];
   const double length = std::hypot(mean[0], mean[1], mean[2]);
-  for (SkyVertex& vertex : row) {
+  for (SkyVertex& vertex : row)
     for (std::size_t i = 0; i < 3; ++i) vertex.direction[i] = mean[i] / length;
-    set_angles(vertex);
-  }
 }
 
 bool is_round_panorama(const Camera& camera) {
@@ -71,14 +63,15 @@ SkyMesh::SkyMesh(const Dataset& samples, const Manifest& picture, std::uint32_t 
       id_(id),
       per_pixel_(picture.samples),
       wraps_(false),
-      ends_in_poles_(false),
       out_{0.5, 0.5 + beyond * picture.samples} {
   // Step 1: columns, in pieces that are continuous.
   const std::optional<Camera> camera = camera_of(picture);
   const int width = samples.manifest.width, lines = samples.manifest.lines;
   wraps_ = camera && (is_round_panorama(*camera) || camera->type == CameraType::tetrahedron_map);
-  ends_in_poles_ =
+  const bool poles =
       camera && is_round_panorama(*camera) && camera->fov_vertical > std::numbers::pi * (1 - 1e-9);
+  in_pole_ = {poles && picture.first_line == 0,
+              poles && picture.first_line + picture.lines == picture.height};
   if (wraps_) {
     for (int i = 0; i <= width; ++i)
       columns_.push_back({(i + 0.5) / per_pixel_, i % width, 0, 0, 0, i < width, 0, picture.width});
@@ -107,16 +100,15 @@ void SkyMesh::add_columns(int first, int last, double beyond) {
 
 SkyVertex SkyMesh::vertex_of(std::uint32_t ray) const {
   const Hits& hits = samples_.hits;
-  SkyVertex out{{}, 0, 0, 1, ray, false};
+  SkyVertex out{{}, 1, ray, false};
   for (std::size_t hit = hits.offset[ray]; hit < hits.offset[ray + std::size_t{1}]; ++hit) {
     if (hits.id[hit] != id_) continue;
     const auto u = static_cast<double>(hits.u[hit]), v = static_cast<double>(hits.v[hit]);
     out.on_sky = u >= 0 && u <= 1 && v >= 0 && v <= 1;
     if (!out.on_sky) return out;
-    out.longitude = 2 * std::numbers::pi * (u - 0.5);
-    out.latitude = std::numbers::pi * (v - 0.5);
-    const double low = std::cos(out.latitude);
-    out.direction = {low * std::cos(out.longitude), low * std::sin(out.longitude), std::sin(out.latitude)};
+    const double longitude = 2 * std::numbers::pi * (u - 0.5), latitude = std::numbers::pi * (v - 0.5),
+                 low = std::cos(latitude);
+    out.direction = {low * std::cos(longitude), low * std::sin(longitude), std::sin(latitude)};
     if (!hits.shift.empty()) out.shift = hits.shift[hit];
   }
   return out;
@@ -145,7 +137,7 @@ void SkyMesh::read_row(std::size_t row, std::vector<SkyVertex>& out) const {
   read_rays(next, inner);
   const bool border = row != 0 && row + 1 != rows();
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = continued(out[i], inner[i], out_[border ? 0 : 1]);
-  if (border && ends_in_poles_) join(out);
+  if (border && in_pole_[above ? 0 : 1]) join(out);
 }
 
 }  // namespace nullcone::postrender

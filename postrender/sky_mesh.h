@@ -17,7 +17,6 @@ std::optional<Camera> camera_of(const Manifest& manifest);
 
 struct SkyVertex {
   Direction direction;
-  double latitude, longitude;
   float shift;
   std::uint32_t ray;  ///< in the grid of samples; beyond the edges the nearest
   bool on_sky;        ///< else the other entries mean nothing
@@ -54,7 +53,8 @@ class SkyMesh {
   const Dataset& samples_;
   std::uint32_t id_;
   int per_pixel_;
-  bool wraps_, ends_in_poles_;  ///< the upper and the lower border of the picture are one direction each
+  bool wraps_;
+  std::array<bool, 2> in_pole_ = {};  ///< whether the upper and the lower border are one direction each
   std::vector<Column> columns_;
   std::vector<double> y_;      ///< of the rows, in lines of the window
   std::array<double, 2> out_;  ///< how far the border lies beyond the outermost rays, and the end; in rays

@@ -36,13 +36,13 @@ class Triangle {
     const double ab = square_distance(direction(0), direction(1)),
                  bc = square_distance(direction(1), direction(2)),
                  ac = square_distance(direction(0), direction(2));
-    square_reach_ = std::max(ab, ac);
-    seen_ = std::max(square_reach_, bc) <= kLargestStep * kLargestStep;
+    square_side_ = std::max({ab, bc, ac});
+    seen_ = square_side_ <= kLargestStep * kLargestStep;
   }
   /// Whether it shows a piece of the sky.
   bool seen() const { return seen_; }
-  /// The square of the longest chord from the first corner.
-  double square_reach() const { return seen_ ? square_reach_ : 0; }
+  /// The square of the longest side, a chord.
+  double square_side() const { return square_side_; }
   const Corner& corner(std::size_t i) const { return corners_[i]; }
 
   /// To be called before those that follow.
@@ -90,7 +90,7 @@ class Triangle {
 
   std::array<Corner, 3> corners_;
   std::array<Direction, 3> edges_{};  ///< each from the corner that stands first in the mesh
-  double volume_ = 0, square_reach_ = 0;
+  double volume_ = 0, square_side_ = 0;
   bool clockwise_, seen_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "postrender/star_catalogue.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <fstream>

@@ -53,18 +53,36 @@ class Finder {
   };
 
   void find(Quad quad, std::vector<StarImage>& out) const {
-    constexpr double kChordToAngle = 1.02;  // within kLargestStep
-    const double square = std::max(quad.triangles[0].square_reach(), quad.triangles[1].square_reach());
-    if (square == 0) return;
-    const SkyVertex& at = *quad.triangles[0].corner(0).vertex;
+    if (!quad.triangles[0].seen() && !quad.triangles[1].seen()) return;
     bool prepared = false;
-    field_.near(at.latitude, at.longitude, kChordToAngle * std::sqrt(square) + 1e-6,
-                [&](std::uint32_t first, std::uint32_t last) {
-                  if (!prepared)
-                    for (Triangle& triangle : quad.triangles) triangle.prepare();
-                  prepared = true;
-                  for (std::uint32_t number = first; number < last; ++number) test(quad, number, out);
-                });
+    field_.within(box_of(quad), [&](std::uint32_t first, std::uint32_t last) {
+      if (!prepared)
+        for (Triangle& triangle : quad.triangles) triangle.prepare();
+      prepared = true;
+      for (std::uint32_t number = first; number < last; ++number) test(quad, number, out);
+    });
+  }
+
+  /// Holds both triangles. Where their corners are apart by s they bulge by up to s^2 / 6 from the flat ones.
+  static Box box_of(const Quad& quad) {
+    Direction low = {2, 2, 2}, high = {-2, -2, -2};
+    double square = 0;
+    for (const Triangle& triangle : quad.triangles) {
+      if (!triangle.seen()) continue;
+      square = std::max(square, triangle.square_side());
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Direction& d = triangle.corner(i).vertex->direction;
+        for (std::size_t k = 0; k < 3; ++k)
+          low[k] = std::min(low[k], d[k]), high[k] = std::max(high[k], d[k]);
+      }
+    }
+    const double more = square / 5 + 1e-6;  // and what float loses
+    Box out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.low[k] = static_cast<float>(low[k] - more);
+      out.high[k] = static_cast<float>(high[k] + more);
+    }
+    return out;
   }
 
   void test(const Quad& quad, std::uint32_t number, std::vector<StarImage>& out) const {

@@ -2,7 +2,6 @@
 // found.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,67 +27,54 @@ double illuminance_lx(double magnitude);
 /// The direction of a right ascension and declination: +x at (0, 0), +y at (90, 0), +z at the pole.
 Direction direction_of(double right_ascension_deg, double declination_deg);
 
-/// Stars in the cells of a grid of latitudes and longitudes that are all about as large.
+/// A box with edges along the axes, ends included.
+struct Box {
+  std::array<float, 3> low, high;
+  bool meets(const Box& other) const {
+    bool out = true;
+    for (std::size_t i = 0; i < 3; ++i) out &= (low[i] <= other.high[i]) & (other.low[i] <= high[i]);
+    return out;
+  }
+};
+
+/// Stars in a tree of boxes, halved along their longest edge down to a few stars: also where they crowd.
 class StarField {
  public:
   explicit StarField(std::vector<Star> stars);
 
-  /// Cell by cell, and in each in the order in which they came.
+  /// Those of a box stand side by side.
   std::span<const Star> stars() const { return stars_; }
   /// From..to in kelvin; (1, 1) where there are none.
   std::array<float, 2> temperatures() const { return temperatures_; }
 
-  /// Calls f(first, last) for numbers of stars, among which are all that lie within `reach` (in radians,
-  /// below 1) of the direction at this latitude and longitude.
+  /// Calls f(first, last) for numbers of stars, among which are all in the box.
   template <class F>
-  void near(double latitude, double longitude, double reach, F&& f) const {
-    const int low = row_at(latitude - reach), high = row_at(latitude + reach);
-    // Nowhere farther aside than arcsin(sin(reach) / cos(latitude)).
-    const double cosine = std::cos(latitude);
-    const bool all_around = !(reach < cosine);
-    const double aside = all_around ? 0 : std::numbers::pi / 2 * reach / cosine;
-    for (int row = low; row <= high; ++row) {
-      const Row& at = rows_[static_cast<std::size_t>(row)];
-      const auto range = [&](int first, int last) {  // both included
-        const std::uint32_t from = offset_[at.first + static_cast<std::size_t>(first)];
-        const std::uint32_t to = offset_[at.first + static_cast<std::size_t>(last) + 1];
-        if (from < to) f(from, to);
-      };
-      const double per_radian = at.count / (2 * std::numbers::pi);
-      const double west = (longitude - aside + std::numbers::pi) * per_radian,
-                   east = (longitude + aside + std::numbers::pi) * per_radian;
-      if (all_around || east - west >= at.count - 1) {
-        range(0, at.count - 1);
-        continue;
-      }
-      const int first = wrapped(west, at.count), last = wrapped(east, at.count);
-      if (first <= last) {
-        range(first, last);
-      } else {
-        range(first, at.count - 1);
-        range(0, last);
-      }
-    }
+  void within(const Box& box, F&& f) const {
+    if (!stars_.empty()) visit({0, 0, static_cast<std::uint32_t>(stars_.size())}, box, f);
   }
 
  private:
-  struct Row {
-    std::size_t first;  ///< cell
-    int count;
+  static constexpr std::uint32_t kLeaf = 8;  ///< stars that are not divided any more, at most
+  /// Boxes are numbered from the root, 0; the halves of box n are 2 n + 1 and 2 n + 2.
+  struct Node {
+    std::size_t number;
+    std::uint32_t first, last;  ///< stars
+    bool is_leaf() const { return last - first <= kLeaf; }
+    std::uint32_t middle() const { return first + (last - first) / 2; }
+    Node lower() const { return {2 * number + 1, first, middle()}; }
+    Node upper() const { return {2 * number + 2, middle(), last}; }
   };
-  int row_at(double latitude) const {
-    const auto rows = static_cast<double>(rows_.size());
-    return static_cast<int>(std::clamp((latitude / std::numbers::pi + 0.5) * rows, 0.0, rows - 1));
+  template <class F>
+  void visit(const Node& node, const Box& box, F& f) const {
+    if (!boxes_[node.number].meets(box)) return;
+    if (node.is_leaf()) return f(node.first, node.last);
+    visit(node.lower(), box, f);
+    visit(node.upper(), box, f);
   }
-  static int wrapped(double cell, int count) {
-    const int at = static_cast<int>(std::floor(cell)) % count;
-    return at < 0 ? at + count : at;
-  }
-  std::size_t cell_of(const Star& star) const;
+  void divide(const Node& node);
 
   std::vector<Star> stars_;
-  std::vector<Row> rows_;              ///< from south to north
-  std::vector<std::uint32_t> offset_;  ///< of the first star of each cell, and behind the last
+  std::vector<Box> boxes_;
   std::array<float, 2> temperatures_ = {1, 1};
 };
 

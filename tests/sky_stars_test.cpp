@@ -51,9 +51,11 @@ StarField random_field(std::size_t count, std::uint64_t seed = 1) {
 std::vector<int> counts(const StarField& field, const Camera& camera, int samples = 1) {
   const Dataset data = sky_dataset(camera, samples);
   std::vector<int> out(field.stars().size());
-  for (const StarImage& image : find_star_images(by_samples(data), data.manifest, 1, field).images) {
+  const StarImages images = find_star_images(by_samples(data), data.manifest, 1, field);
+  for (const StarImage& image : images.images) {
     const auto x = static_cast<double>(image.x), y = static_cast<double>(image.y);
-    if (x >= image.left && x <= image.right && y >= 0 && y <= camera.height) ++out[image.star];
+    const bool across = images.wraps || (x >= image.left && x <= image.right);
+    if (across && y >= 0 && y <= camera.height) ++out[image.star];
   }
   return out;
 }
@@ -225,22 +227,24 @@ TEST(StarImages, ThatFallOnRaysAreFoundOnce) {
   EXPECT_EQ(total, static_cast<int>(stars.size()));
 }
 
-TEST(StarImages, GridFindsAllStarsWithinReach) {
-  const StarField field = random_field(3000, 7);
-  for (int k = 0; k < 200; ++k) {
-    const double latitude = (0.5 * std::numbers::pi) * std::sin(0.37 * k),
-                 longitude = std::numbers::pi * std::sin(1.1 * k), reach = 0.005 * (1 + k % 40);
-    std::vector<char> found(field.stars().size());
-    field.near(latitude, longitude, reach, [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t i = first; i < last; ++i) found[i]++;
-    });
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const auto& d = field.stars()[i].direction;
-      const double cosine = static_cast<double>(d[0]) * std::cos(latitude) * std::cos(longitude) +
-                            static_cast<double>(d[1]) * std::cos(latitude) * std::sin(longitude) +
-                            static_cast<double>(d[2]) * std::sin(latitude);
-      ASSERT_LE(found[i], 1);
-      ASSERT_TRUE(found[i] == 1 || cosine <= std::cos(reach)) << k;
+TEST(StarImages, TreeFindsAllStarsInABox) {
+  for (const std::size_t count : {1U, 8U, 9U, 17U, 3000U}) {
+    const StarField field = random_field(count, 7);
+    for (int k = 0; k < 100; ++k) {
+      Box box;
+      for (std::size_t i = 0; i < 3; ++i) {
+        box.low[i] = static_cast<float>(std::sin(1.7 * k + 2.1 * static_cast<double>(i)));
+        box.high[i] = box.low[i] + 0.01f * static_cast<float>(k);
+      }
+      std::vector<char> found(count);
+      field.within(box, [&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t i = first; i < last; ++i) found[i]++;
+      });
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto& d = field.stars()[i].direction;
+        ASSERT_LE(found[i], 1);
+        ASSERT_TRUE(found[i] == 1 || !box.meets({d, d}));
+      }
     }
   }
 }
