@@ -74,11 +74,11 @@ Star star_of(const std::vector<std::string_view>& fields, const std::string& pla
   return make_star(direction_of(row[0], row[1]), row[2], row[3]);
 }
 
-/// Names of columns: there is no number among the fields.
+/// Names of columns: each field begins with a letter, and none is a number for all that.
 bool is_header(const std::vector<std::string_view>& fields) {
   return fields.size() >= 4 && std::ranges::all_of(fields, [](std::string_view field) {
-           return !field.empty() && std::isnan(number_of(field)) && field != "nan" && field != "inf" &&
-                  field.find_first_of("0123456789") == std::string_view::npos;
+           const char first = field.empty() ? ' ' : static_cast<char>(field[0] | 0x20);
+           return first >= 'a' && first <= 'z' && field != "nan" && field != "inf";
          });
 }
 
