@@ -34,7 +34,7 @@ struct StarImages {
 inline constexpr double kBeyondEdge = 4;
 /// Neighbouring rays whose directions are farther apart than this (a chord of the unit sphere) do not belong
 /// to one image of the sky, or to one too small for the picture.
-inline constexpr double kLargestStep = 0.5;
+inline constexpr double kLargestStep = 1;
 
 /// All images of the stars of object `id`. `samples` is the dataset as by_samples() makes it, with uv; its
 /// pixels are the rays of `picture`. Each image is found once: triangles share edges to the last bit.
