@@ -63,7 +63,8 @@ class Finder {
     });
   }
 
-  /// Holds both triangles. Where their corners are apart by s they bulge by less than s^2 / 5 from the flat ones.
+  /// Holds both triangles. Where their corners are apart by s they bulge by less than s^2 / 5 from the flat
+  /// ones.
   static Box box_of(const Quad& quad) {
     Direction low = {2, 2, 2}, high = {-2, -2, -2};
     double square = 0;
