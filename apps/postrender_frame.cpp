@@ -52,6 +52,8 @@ void read_textures_ahead(const std::vector<pr::Look>& looks, pr::TextureCache& t
   const auto read = [&](const pr::AppearanceLook& appearance) {
     const auto* image = appearance.texture ? std::get_if<pr::ImageLook>(&*appearance.texture) : nullptr;
     if (image != nullptr) textures.get(image->file, image->pointer, image->alpha);
+    const auto* cube = appearance.texture ? std::get_if<pr::CubeLook>(&*appearance.texture) : nullptr;
+    if (cube != nullptr) textures.get_cube(cube->files, cube->pointers);
   };
   try {
     for (const pr::Look& look : looks)

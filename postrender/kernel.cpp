@@ -1,6 +1,7 @@
 // Compiled once for each instruction set: see CMakeLists.txt and core/base/isa.h.
 #include "postrender/kernel.h"
 
+#include "postrender/kernel_cube.h"
 #include "postrender/kernel_develop.h"
 #include "postrender/kernel_footprint.h"
 #include "postrender/kernel_reflection.h"
@@ -16,6 +17,7 @@ const Kernel NULLCONE_POSTRENDER_KERNEL = {
     NULLCONE_ISA::recorded_footprints,
     NULLCONE_ISA::weigh,
     NULLCONE_ISA::image_colors,
+    NULLCONE_ISA::cube_colors,
     NULLCONE_ISA::checkerboard_colors,
     NULLCONE_ISA::plain_light,
     NULLCONE_ISA::filtered_light,

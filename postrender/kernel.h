@@ -44,6 +44,20 @@ struct ImageView {
   bool mipmap;
 };
 
+/// Components of a direction on a face of a cube: to the right, down, and through its middle; of length 1.
+struct CubeFaceView {
+  float right[3], down[3], ahead[3];
+};
+
+struct CubeView {
+  CubeFaceView faces[6];
+  const LevelView* levels;  ///< face by face, with a border of one texel
+  float last_level;
+  const Texel* texels;
+  float unit;
+  bool mipmap, recorded;  ///< `recorded`: steps are derivatives; else differences to neighbours
+};
+
 /// Pixels that light is added to: sum += weight * what is seen, by g, of a surface that is coloured so.
 struct Lit {
   std::size_t count;
@@ -100,6 +114,7 @@ struct Kernel {
                 std::uint32_t* appearance);
   // The texture's colours along a run, of images also the alpha (colours are multiplied by it).
   void (*image)(const ImageView& image, const Run& run, Rgbx* out);
+  void (*cube)(const CubeView& cube, const Run& run, Rgbx* out);
   void (*checkerboard)(const CheckerboardTexture& board, const Run& run, Rgbx* out);
   // Light: colours as they are; filters before one spectrum; amounts of three spectra; lines behind filters.
   void (*plain)(const Lit& lit);

@@ -7,6 +7,22 @@ namespace nullcone::postrender {
 
 namespace {
 
+/// Only skies have stars, as far as the scene tells what they are.
+void check_stars(const std::map<std::string, ObjectLook>& objects, const JsonObject& in,
+                 const Manifest& manifest) {
+  if (manifest.scene.empty() ||
+      std::ranges::none_of(objects, [](const auto& o) { return o.second.stars.has_value(); }))
+    return;
+  const nlohmann::json scene = nlohmann::json::parse(manifest.scene, nullptr, false);
+  if (!scene.is_object() || !scene.contains("objects") || !scene["objects"].is_array()) return;
+  for (const nlohmann::json& object : scene["objects"]) {
+    const nlohmann::json shape = object.value("/shape/type"_json_pointer, nlohmann::json());
+    const auto found = objects.find(object.value("name", std::string()));
+    if (found != objects.end() && found->second.stars && shape != "sky")
+      in.refuse(found->first + "/stars", "is no sky; expected stars on a sky only");
+  }
+}
+
 std::map<std::string, ObjectLook> parse_objects(JsonObject in, const LookSource& source,
                                                 const Manifest& manifest) {
   std::string names;
@@ -19,6 +35,7 @@ std::map<std::string, ObjectLook> parse_objects(JsonObject in, const LookSource&
   }
   for (const ObjectEntry& object : manifest.objects)
     out.emplace(object.name, parse_object(in.object_or_empty(object.name), source));
+  check_stars(out, in, manifest);
   return out;
 }
 

@@ -171,6 +171,7 @@ ObjectLook parse_object(JsonObject in, const LookSource& source) {
   object.surface = parse_surface(in.object_or_empty("surface"));
   object.appearance = parse_appearance(in, source);
   if (!object.appearance.spectrum) in.note("spectrum", {{"type", "display"}});
+  if (in.has("stars")) object.stars = parse_stars(in, source);
   object.opacity = parse_number_or(in, "opacity", source, 1, {0, 1});
   object.time_slices =
       parse_time_slices(in, [&](JsonObject& slice) { return parse_appearance(slice, source); });

@@ -9,6 +9,7 @@
 #include "postrender/coats.h"
 #include "postrender/emission.h"
 #include "postrender/look_spectrum.h"
+#include "postrender/look_stars.h"
 #include "postrender/look_texture.h"
 
 namespace nullcone::postrender {
@@ -50,6 +51,7 @@ struct ObjectLook {
   Number opacity{1};                       ///< times what is recorded; always 0 hides the object
   std::vector<TimeSliceLook> time_slices;  ///< the first that holds wins
   SurfaceType surface = SurfaceType::self_luminous;
+  std::optional<StarsLook> stars;  ///< of a sky, before its texture
 
   bool is_lit() const { return surface == SurfaceType::lambertian && !opacity.always(0); }
 };

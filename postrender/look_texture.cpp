@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "postrender/cube_map.h"
 #include "postrender/look_changing.h"
 
 namespace nullcone::postrender {
@@ -12,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-using StillLook = std::variant<ColorTexture, CheckerboardTexture, ImageLook>;
+using StillLook = std::variant<ColorTexture, CheckerboardTexture>;
 
 constexpr std::size_t kSteps = 64;  ///< between two keyframes, of colours and squares
 constexpr Bounds kPlace = {-1e4, 1e4}, kAngle = {-1e9, 1e9};
@@ -25,23 +26,6 @@ std::array<Number, 2> parse_pair(JsonObject& in, std::string_view key, const Loo
   if (!in.has(key)) return {Number{fallback}, Number{fallback}};
   std::vector<Number> pair = parse_numbers(in, key, source, 2, kPlace);
   return {std::move(pair[0]), std::move(pair[1])};
-}
-
-Rotation parse_rotation(JsonObject& in, const LookSource& source) {
-  Rotation out;
-  if (in.at("rotate_deg").is_array()) {
-    std::vector<Number> about = parse_numbers(in, "rotate_deg", source, 3, kAngle);
-    std::ranges::move(about, out.about_deg.begin());
-    return out;
-  }
-  JsonObject rotation = in.object("rotate_deg");
-  const std::vector<double> axis = rotation.numbers("axis", 3, -1e100, 1e100);
-  const double length = std::hypot(axis[0], axis[1], axis[2]);
-  if (!(length >= 1e-100)) rotation.refuse("axis", "expected a direction, not (nearly) 0");
-  out.axis = {axis[0] / length, axis[1] / length, axis[2] / length};
-  out.about_deg[0] = parse_number(rotation, "angle_deg", source, kAngle);
-  rotation.finish();
-  return out;
 }
 
 constexpr std::array kPlacementKeys = {"offset", "scale", "rotate_deg"};
@@ -118,6 +102,27 @@ TextureLook parse_image(JsonObject& in, const LookSource& source, const std::opt
   return parse_sequence(in.object("sequence"), image, source);
 }
 
+// --- Cube maps ---
+
+CubeLook parse_cube(JsonObject& in, const LookSource& source) {
+  CubeLook out;
+  if (in.has("file") == in.has("faces")) in.refuse("", "expected either file or faces");
+  const auto add = [&](JsonObject& from, const char* key) {
+    out.files.push_back(parse_file(from, key, source));
+    out.pointers.push_back(pointer_of(from, key, source));
+  };
+  if (in.has("file")) {
+    add(in, "file");
+  } else {
+    JsonObject faces = in.object("faces");
+    for (const char* name : kCubeFaceNames) add(faces, name);
+    faces.finish();
+  }
+  out.filter =
+      in.word("filter", {"mipmap", "bilinear"}, "mipmap") == "mipmap" ? Filter::mipmap : Filter::bilinear;
+  return out;
+}
+
 // --- Checkerboards and colours ---
 
 /// A list of two colours under `key`.
@@ -183,7 +188,8 @@ TextureLook parse_nodes(json entry, const LookSource& source, const std::string&
   const Nodes nodes = at_nodes(entry, kSteps, {"counts"}, source.place, pointer);
   MovingLook out;
   for (const json& value : nodes.values)
-    out.frames.push_back(parse_still(JsonObject(value, source.place, pointer)));
+    std::visit([&](auto&& still) { out.frames.emplace_back(still); },
+               parse_still(JsonObject(value, source.place, pointer)));
   out.timeline = nodes.timeline;
   if (out.frames.size() > 1) return out;
   return std::visit([](auto&& still) -> TextureLook { return still; }, out.frames[0]);
@@ -198,6 +204,7 @@ TextureLook placed(TextureLook texture, const Placement& placement) {
   MovingLook out{placement, {}, {}};
   if (const auto* board = std::get_if<CheckerboardTexture>(&texture)) out.frames.emplace_back(*board);
   if (auto* image = std::get_if<ImageLook>(&texture)) out.frames.emplace_back(std::move(*image));
+  if (auto* cube = std::get_if<CubeLook>(&texture)) out.frames.emplace_back(std::move(*cube));
   return out;
 }
 
@@ -210,6 +217,23 @@ auto image_of(Look& texture) -> decltype(std::get_if<ImageLook>(&texture)) {
 }
 
 }  // namespace
+
+Rotation parse_rotation(JsonObject& in, const LookSource& source) {
+  Rotation out;
+  if (in.at("rotate_deg").is_array()) {
+    std::vector<Number> about = parse_numbers(in, "rotate_deg", source, 3, kAngle);
+    std::ranges::move(about, out.about_deg.begin());
+    return out;
+  }
+  JsonObject rotation = in.object("rotate_deg");
+  const std::vector<double> axis = rotation.numbers("axis", 3, -1e100, 1e100);
+  const double length = std::hypot(axis[0], axis[1], axis[2]);
+  if (!(length >= 1e-100)) rotation.refuse("axis", "expected a direction, not (nearly) 0");
+  out.axis = {axis[0] / length, axis[1] / length, axis[2] / length};
+  out.about_deg[0] = parse_number(rotation, "angle_deg", source, kAngle);
+  rotation.finish();
+  return out;
+}
 
 bool is_of_materials(const TextureLook& texture) {
   const ImageLook* image = image_of(texture);
@@ -224,12 +248,19 @@ TextureLook of_materials(TextureLook texture, MaterialGroup group) {
 TextureLook parse_texture(JsonObject& outer, const LookSource& source) {
   const json& entry = outer.at("texture");
   JsonObject in = outer.object("texture");
-  const std::string type = in.word("type", {"image", "checkerboard", "color", "materials"});
+  const std::string type = in.word("type", {"image", "checkerboard", "color", "materials", "cube_map"});
   const std::string pointer = pointer_of(outer, "texture", source);
   if (type == "color") {
     for (const char* key : kPlacementKeys)
       if (in.has(key)) in.refuse(key, "unknown key; a color has no place; expected one of rgb, type");
     return parse_nodes(entry, source, pointer);
+  }
+  if (type == "cube_map") {
+    CubeLook cube = parse_cube(in, source);
+    Placement turned;
+    if (in.has("rotate_deg")) turned.rotation = parse_rotation(in, source);
+    in.finish();
+    return turned.rotation ? placed(std::move(cube), turned) : cube;
   }
   const Placement placement = parse_placement(in, source);
   const std::optional<UvTransform> plain = placement.plain();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/faces.h"
 #include "postrender/anisotropic.h"
 
 namespace nullcone::postrender {
@@ -28,12 +29,14 @@ struct NeedsFootprint {
   bool operator()(const ColorTexture&) const { return false; }
   bool operator()(const CheckerboardTexture&) const { return true; }
   bool operator()(const ImageTexture& image) const { return image.filter != Filter::bilinear; }
+  bool operator()(const CubeTexture& cube) const { return cube.filter != Filter::bilinear; }
 };
 
 struct HasAlpha {
   bool operator()(const ColorTexture&) const { return false; }
   bool operator()(const CheckerboardTexture&) const { return false; }
   bool operator()(const ImageTexture& image) const { return image.alpha; }
+  bool operator()(const CubeTexture&) const { return false; }
 };
 
 /// Pixels [first, first + count) of a run.
@@ -44,6 +47,20 @@ Run part_of(const Run& run, std::size_t first, std::size_t count) {
     out.footprints = {f.u_right + first, f.v_right + first, f.u_down + first, f.v_down + first};
   return out;
 }
+
+/// The faces' own axes.
+constexpr std::array<CubeFaceView, 6> cube_views() {
+  std::array<CubeFaceView, 6> out{};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const host::Face& face = host::kCube.face[i];
+      out[i].right[c] = static_cast<float>(face.right.c[c] / 2);
+      out[i].down[c] = static_cast<float>(face.down.c[c] / 2);
+      out[i].ahead[c] = static_cast<float>(face.corner.c[c] + (face.right.c[c] + face.down.c[c]) / 2);
+    }
+  return out;
+}
+constexpr std::array<CubeFaceView, 6> kCubeViews = cube_views();
 
 struct TextureColors {
   const Kernel& kernel;
@@ -64,6 +81,18 @@ struct TextureColors {
     } else {
       kernel.image(view, run, out);
     }
+  }
+  void operator()(const CubeTexture& texture) const {
+    const Pyramid& faces = *texture.faces;
+    CubeView view = {{},
+                     faces.levels.data(),
+                     static_cast<float>(faces.levels.size() / 6 - 1),
+                     faces.texels.data(),
+                     faces.unit,
+                     texture.filter != Filter::bilinear,
+                     recorded};
+    std::ranges::copy(kCubeViews, view.faces);
+    kernel.cube(view, run, out);
   }
   void operator()(const MovingTexture& texture) const {
     if (!texture.parts->placement) return frames_of(*texture.parts, run);

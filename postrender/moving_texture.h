@@ -13,7 +13,7 @@
 
 namespace nullcone::postrender {
 
-using StillTexture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture>;
+using StillTexture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture, CubeTexture>;
 
 struct MovingTexture {
   struct Parts {
@@ -27,7 +27,7 @@ struct MovingTexture {
   bool operator==(const MovingTexture& other) const { return *parts == *other.parts; }
 };
 
-using Texture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture, MovingTexture>;
+using Texture = std::variant<ColorTexture, CheckerboardTexture, ImageTexture, CubeTexture, MovingTexture>;
 
 /// Whether footprints must be known.
 bool needs_footprint(const Texture& texture);

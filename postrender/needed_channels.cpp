@@ -24,6 +24,7 @@ struct HasFootprint {
   bool operator()(const ColorTexture&) const { return false; }
   bool operator()(const CheckerboardTexture&) const { return true; }
   bool operator()(const ImageLook& image) const { return image.filter != Filter::bilinear; }
+  bool operator()(const CubeLook& cube) const { return cube.filter != Filter::bilinear; }
   bool operator()(const MovingLook& moving) const { return std::visit(*this, moving.frames.front()); }
 };
 
@@ -113,6 +114,13 @@ void add_needs(const AppearanceLook& appearance, const std::string& pointer, con
   }
 }
 
+void add_stars(const std::string& pointer, const Effects& effects, Needs& out) {
+  out.required.push_back({"uv", pointer, "leave the stars out"});
+  if (effects.doppler || effects.searchlight)
+    out.required.push_back(
+        {"shift", effects.doppler ? "/effects/doppler" : "/effects/searchlight", "switch the effect off"});
+}
+
 Needs needs_of(const Look& look, const Manifest& manifest) {
   Needs out;
   for (const ObjectEntry& entry : manifest.objects) {
@@ -128,6 +136,7 @@ Needs needs_of(const Look& look, const Manifest& manifest) {
       const bool spectral = object.is_lit() ? has_spectral_light(look) : is_spectral(whole);
       add_needs(whole, place, look.effects, spectral, manifest, out);
     };
+    if (object.stars) add_stars(pointer + "/stars", look.effects, out);
     if (object.is_lit() && needs_lamps(look, manifest))
       out.required.push_back({"light", pointer + "/surface", "switch all lamps off"});
     add(object.appearance, pointer);

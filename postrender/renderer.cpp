@@ -82,10 +82,10 @@ std::shared_ptr<const Renderer::Source> Renderer::make_source(Dataset dataset) {
 }
 
 Renderer::Renderer(Dataset dataset, const Kernel& kernel, std::shared_ptr<TextureCache> textures)
-    : Renderer(make_source(std::move(dataset)), kernel, std::move(textures)) {}
+    : Renderer(make_source(std::move(dataset)), kernel, std::move(textures), std::make_shared<StarCache>()) {}
 
 Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
-                   std::shared_ptr<TextureCache> textures)
+                   std::shared_ptr<TextureCache> textures, std::shared_ptr<StarCache> stars)
     : source_(std::move(source)),
       manifest_(source_->manifest),
       dataset_(source_->dataset),
@@ -93,22 +93,32 @@ Renderer::Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
       shifts_(source_->shifts),
       light_shifts_(source_->light_shifts),
       kernel_(kernel),
-      textures_(std::move(textures)) {}
+      textures_(std::move(textures)),
+      stars_(std::move(stars)) {}
 
 void Renderer::keep_radiance(const Shading& shading) {
   const std::size_t width = static_cast<std::size_t>(dataset_.manifest.width);
   const bool physical = has_physical(shading), display = !physical || has_display(shading);
   radiance_.display.resize(display ? dataset_.pixels() : 0);
   radiance_.physical.resize(physical ? dataset_.pixels() : 0);
+  visible_.resize(shading.stars.empty() ? 0 : dataset_.pixels());
   begin_keeping();
   for_each_row(dataset_.manifest.lines, [&] {
     return
         [this, width, shader = LineShader(dataset_, one_each_, shading, kernel_)](std::size_t row) mutable {
           shader.shade(row, line_of(radiance_.display, row, width), line_of(radiance_.physical, row, width),
-                       kept_colors(row));
+                       kept_colors(row), line_of(visible_, row, width));
         };
   });
   end_keeping();
+  draw_stars(shading);
+}
+
+/// Points before what has been shaded; their spots are as wide as they are, whatever the pixel filter.
+void Renderer::draw_stars(const Shading& shading) {
+  for (const StarShading& stars : shading.stars)
+    add_stars(kernel_, stars, *stars_->images(stars.field, stars.id, dataset_, manifest_), visible_,
+              manifest_.width, radiance_.physical);
 }
 
 /// The radiance of pixels from that of their samples: first along the lines, then down the columns.
@@ -116,6 +126,7 @@ void Renderer::keep_filtered(const Shading& shading, const PixelFilter& filter) 
   const auto width = static_cast<std::size_t>(manifest_.width);
   const auto wide = static_cast<std::size_t>(dataset_.manifest.width);
   const bool physical = has_physical(shading);
+  visible_.resize(shading.stars.empty() ? 0 : dataset_.pixels());
   const std::size_t narrowed = width * static_cast<std::size_t>(dataset_.manifest.lines);
   Radiance lines{std::vector<Rgbx>(narrowed), std::vector<Rgbx>(physical ? narrowed : 0)};
   const FilterTable across(filter, manifest_.width, manifest_.samples),
@@ -124,7 +135,8 @@ void Renderer::keep_filtered(const Shading& shading, const PixelFilter& filter) 
     return [&, width, shader = LineShader(dataset_, one_each_, shading, kernel_),
             line = Radiance{std::vector<Rgbx>(wide), std::vector<Rgbx>(physical ? wide : 0)}](
                std::size_t row) mutable {
-      shader.shade(row, line.display.data(), physical ? line.physical.data() : nullptr);
+      shader.shade(row, line.display.data(), physical ? line.physical.data() : nullptr, {},
+                   line_of(visible_, row, wide));
       filter_line(across, line.display.data(), lines.display.data() + row * width);
       if (physical) filter_line(across, line.physical.data(), lines.physical.data() + row * width);
     };
@@ -138,6 +150,7 @@ void Renderer::keep_filtered(const Shading& shading, const PixelFilter& filter) 
         filter_columns(down, row, lines.physical.data(), width, radiance_.physical.data() + row * width);
     };
   });
+  draw_stars(shading);
 }
 
 void Renderer::develop_kept(const DevelopLook& look, Image& image) const {
@@ -203,7 +216,8 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   set_size(image, manifest_.width, manifest_.lines, parts);
   image.output = look.develop.output;
   // Step 2: shade line by line, unless only the development changed. Radiance is kept where the white must be
-  // found in it, where pixels take in several samples, and from the second picture of the same shading on.
+  // found in it, where pixels take in several samples, where there are stars, and from the second picture of
+  // the same shading on.
   const bool physical = has_physical(shading),
              white_known = !physical || look.develop.white_cd_m2.has_value();
   const bool same = shaded_ == shading && filter_ == look.pixel_filter;
@@ -211,7 +225,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   if (!same) kept_ = false;
   decide_keeping(shading);
   shaded_.reset();
-  if (!kept_ && (same || !white_known || filtered)) {
+  if (!kept_ && (same || !white_known || filtered || !shading.stars.empty())) {
     if (filtered) {
       keep_filtered(shading, look.pixel_filter);
     } else {
@@ -236,6 +250,7 @@ void Renderer::render(const Look& look, const ImageParts& parts, Image& image) {
   }
   filter_ = look.pixel_filter;
   shaded_ = std::move(shading);
+  if (!same) stars_->prune();
 }
 
 }  // namespace nullcone::postrender

@@ -11,6 +11,7 @@
 #include "postrender/reflection.h"
 #include "postrender/shade.h"
 #include "postrender/shift_ranges.h"
+#include "postrender/star_light.h"
 #include "postrender/texture_cache.h"
 
 namespace nullcone::postrender {
@@ -20,17 +21,17 @@ class TextureMaker;
 /// How bright it is when, and its temperature; without opacity.
 Emission emission_of(const AppearanceLook& look, const Effects& effects);
 
-/// Holds a dataset and what depends on unchanged parts of the look: textures, and the shaded radiance when
-/// only exposure, tone curve or gamut mapping change. One thread at a time may call it; inside it works on
-/// all of them, and the pictures do not depend on how many there are.
+/// Holds a dataset and what depends on unchanged parts of the look: textures, where stars are seen, and the
+/// shaded radiance when only exposure, tone curve or gamut mapping change. One thread at a time may call it;
+/// inside it works on all of them, and the pictures do not depend on how many there are.
 class Renderer {
  public:
   /// Throws InputError when the columns do not fit the manifest (counts, objects' numbers, samples). Only the
   /// channels that the looks need must be there (needed_channels.h).
   explicit Renderer(Dataset dataset, const Kernel& kernel = *kernels().front(),
                     std::shared_ptr<TextureCache> textures = std::make_shared<TextureCache>());
-  /// Another renderer of the same dataset, for another thread. They share dataset and textures.
-  Renderer sibling() const { return Renderer(source_, kernel_, textures_); }
+  /// Another renderer of the same dataset, for another thread. They share dataset, textures and stars.
+  Renderer sibling() const { return Renderer(source_, kernel_, textures_, stars_); }
 
   /// Of the picture.
   const Manifest& manifest() const { return source_->manifest; }
@@ -60,8 +61,8 @@ class Renderer {
     std::vector<std::vector<LightShifts>> light_shifts;  ///< by object and lamp
   };
   static std::shared_ptr<const Source> make_source(Dataset dataset);
-  Renderer(std::shared_ptr<const Source> source, const Kernel& kernel,
-           std::shared_ptr<TextureCache> textures);
+  Renderer(std::shared_ptr<const Source> source, const Kernel& kernel, std::shared_ptr<TextureCache> textures,
+           std::shared_ptr<StarCache> stars);
 
   /// What lamps send out, by Shading::lamp_states, and which lamp each of them is.
   struct LampLight {
@@ -80,6 +81,8 @@ class Renderer {
                              const Look& look);
   void add_materials(Appearance& out, TextureMaker& textures, const TextureLook& texture,
                      const SpectrumLook& materials, std::uint32_t id, const Look& look);
+  void add_stars_of(Shading& shading, const ObjectLook& object, std::uint32_t id, const Look& look);
+  void draw_stars(const Shading& shading);
   Light light_of(const SpectrumLook& spectrum, const Emission& emission, std::uint32_t id, const Look& look);
 
   void keep_radiance(const Shading& shading);
@@ -101,10 +104,12 @@ class Renderer {
   LightTables lights_;
   ReflectionTables reflections_;
   std::shared_ptr<TextureCache> textures_;
+  std::shared_ptr<StarCache> stars_;
   std::optional<Shading> shaded_;  ///< of the last picture
   PixelFilter filter_;             ///< of the last picture
   bool kept_ = false;              ///< whether radiance_ shows it
   Radiance radiance_;
+  std::vector<float> visible_;  ///< by ray: how much of a sky with stars is seen; empty without stars
   /// Colours of textures, of first crossings.
   enum class Keeping { no, wanted, known } keeping_ = Keeping::no;
   std::vector<Rgbx> colors_;

@@ -1,5 +1,6 @@
 // The first step of a picture: from a look to a shading.
 #include <algorithm>
+#include <limits>
 
 #include "core/base/error.h"
 #include "postrender/color.h"
@@ -51,7 +52,10 @@ std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, c
   const std::string& name = manifest_.objects[id - 1].name;
   const SpectrumLook spectrum = own.spectrum.value_or(SpectrumLook{});
   // What radiates by itself, or is lit, needs no colour; what is shown as it is gets its flat one.
-  const Rgb plain = spectrum.physical || object.is_lit() ? Rgb{1, 1, 1} : default_color(id);
+  // Behind stars it is dark.
+  const Rgb plain = object.stars                           ? Rgb{}
+                    : spectrum.physical || object.is_lit() ? Rgb{1, 1, 1}
+                                                           : default_color(id);
   const TextureLook texture = own.texture.value_or(ColorTexture{plain});
   const bool materials = is_of_materials(texture);
   Appearance out{materials ? ColorTexture{} : textures.make(texture), {}};
@@ -82,6 +86,24 @@ std::size_t Renderer::add_appearance(Shading& shading, TextureMaker& textures, c
   return first;
 }
 
+/// Points have the sky's opacity and intensity, and no time of emission.
+void Renderer::add_stars_of(Shading& shading, const ObjectLook& object, std::uint32_t id, const Look& look) {
+  if (!object.stars || object.opacity.always(0)) return;
+  constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
+  StarShading out{id, stars_->field(*object.stars), {}, look.effects.doppler, look.effects.power(),
+                  1,  object.stars->style};
+  if (look.effects.doppler) out.power -= 5;  // L(g lambda; T) = g^-5 B(lambda; g T)
+  out.intensity = out.style.intensity;
+  if (object.appearance.intensity) out.intensity *= object.appearance.intensity->at({kLongAgo, kLongAgo});
+  const ShiftRange shifts = look.effects.doppler ? shifts_[id - 1] : ShiftRange{};
+  const auto [coldest, hottest] = out.field->temperatures();
+  constexpr auto kReference = static_cast<float>(kReferenceStar_K);
+  const SpectrumLook body{SpectrumLook::Kind::filtered, true, {black_body(kReferenceStar_K)}, "stars"};
+  out.light = lights_.get(body, Effects{}, *look.sensor,
+                          {shifts.from * coldest / kReference, shifts.to * hottest / kReference});
+  shading.stars.push_back(std::move(out));
+}
+
 Shading Renderer::prepare(const Look& look) {
   check_channels(look, manifest_, dataset_.hits.channels, "dataset");
   Shading shading{{}, {}, look.background, {}};
@@ -94,6 +116,7 @@ Shading Renderer::prepare(const Look& look) {
     const auto add = [&](const AppearanceLook& appearance) {
       return add_appearance(shading, textures, appearance, object, lamps, id, look);
     };
+    add_stars_of(shading, object, id, look);
     shading.objects.push_back(shading_in_time(entry.tau_origin, object.appearance, object.time_slices, add));
   }
   note_light(shading, look, lamps);

@@ -4,31 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "postrender/lanes.h"
+#include "postrender/kernel_direction.h"
 
 NULLCONE_KERNEL_BEGIN
-
-struct Point {
-  float x, y, z;
-};
-
-struct SineCosine {
-  float sine, cosine;
-};
-
-/// Of 2 pi x, |x| < 1e5: polynomials on an eighth of a turn (Cephes), within 1e-7.
-inline SineCosine of_turns(float x) {
-  const float quarter = nearest_of(4 * x);
-  const float a = (4 * x - quarter) * 1.5707963268f, aa = a * a;
-  const float s = a + a * aa * (-1.6666654611e-1f + aa * (8.3321608736e-3f + aa * -1.9515295891e-4f));
-  const float c =
-      1 - 0.5f * aa +
-      aa * aa * (4.166664568298827e-2f + aa * (-1.388731625493765e-3f + aa * 2.443315711809948e-5f));
-  const auto q = static_cast<std::int32_t>(quarter);
-  const bool swapped = (q & 1) != 0;
-  const float sine = swapped ? c : s, cosine = swapped ? s : c;
-  return {(q & 2) != 0 ? -sine : sine, ((q + 1) & 2) != 0 ? -cosine : cosine};
-}
 
 /// atan2(y, x) / 2 pi, within 3e-8; 0 for (0, 0).
 inline float turns_of(float y, float x) {
@@ -48,17 +26,6 @@ inline float turns_of(float y, float x) {
   return y < 0 ? -half : half;
 }
 
-/// The direction of (u, v), and the derivatives that its change along both needs.
-struct Frame {
-  Point p;
-  float sine, cosine, low;  ///< of the longitude; of the latitude the cosine
-};
-inline Frame frame_at(float u, float v) {
-  const float within = v > 0 ? v : 0.0f, latitude = 0.5f * (within < 1 ? within : 1.0f) - 0.25f;
-  const SineCosine along = of_turns(u - 0.5f), up = of_turns(latitude);
-  return {{up.cosine * along.cosine, up.cosine * along.sine, up.sine}, along.sine, along.cosine, up.cosine};
-}
-
 template <class Entry>
 inline Point turned(const Entry& m, std::size_t i, const Point& p) {
   return {m(0, i) * p.x + m(1, i) * p.y + m(2, i) * p.z, m(3, i) * p.x + m(4, i) * p.y + m(5, i) * p.z,
@@ -69,9 +36,6 @@ inline float longitude(const Point& p) { return 0.5f + turns_of(p.y, p.x); }
 inline float distance_from_axis(const Point& p) { return __builtin_sqrtf(p.x * p.x + p.y * p.y); }
 inline float latitude(const Point& p) { return 0.5f + 2 * turns_of(p.z, distance_from_axis(p)); }
 
-inline bool known(float du, float dv) {
-  return (__builtin_fabsf(du) < kFarthest) & (__builtin_fabsf(dv) < kFarthest);
-}
 inline float bounded(float x) {
   const float above = x > -kFarthest ? x : -kFarthest;
   return above < kFarthest ? above : kFarthest;
@@ -81,13 +45,9 @@ inline float bounded(float x) {
 template <class Entry>
 void turn_derivatives(const Entry& m, std::size_t count, const float* __restrict u, const float* __restrict v,
                       float* __restrict du, float* __restrict dv) {
-  constexpr float kTurn = 6.2831853072f;
   for (std::size_t i = 0; i < count; ++i) {
     const Frame at = frame_at(u[i], v[i]);
-    const float along = kTurn * at.low * du[i], up = 0.5f * kTurn * dv[i];
-    const Point step = {-along * at.sine - up * at.p.z * at.cosine, along * at.cosine - up * at.p.z * at.sine,
-                        up * at.low};
-    const Point p = turned(m, i, at.p), d = turned(m, i, step);
+    const Point p = turned(m, i, at.p), d = turned(m, i, step_along(at, du[i], dv[i]));
     const float r = distance_from_axis(p);
     const bool off_axis = r > 1e-6f;
     const float far = off_axis ? r : 1e-6f;

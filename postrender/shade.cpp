@@ -117,12 +117,14 @@ bool LineShader::find_appearances(std::size_t row, std::size_t rank, const Layer
   if (!layered_ && one_each_[row] == kOneOpaqueEach && !hidden) {
     if (!whole_weights_) std::ranges::fill(pass.weight, 1.0f);
     whole_weights_ = true;
+    note_visible(here);
     return false;
   }
   whole_weights_ = false;
   if (layered_) find_opacities(row, rank, here);
   const bool through = kernel_.weigh(layered_ ? opacity_.data() : here.opacity, width_, transmittance_.data(),
                                      pass.weight.data(), pass.appearance.data());
+  note_visible(here);
   if (layered_) share_weights();
   return through;
 }
@@ -162,6 +164,15 @@ void LineShader::find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::
     // Back to the colour of what is there: the weight brings the opacity in again.
     color = alpha > 0 ? Rgbx{color.r / alpha, color.g / alpha, color.b / alpha} : Rgbx{};
   }
+}
+
+/// Of pixels that see a sky with stars in this rank.
+void LineShader::note_visible(const Layer& here) {
+  if (visible_ == nullptr) return;
+  const Pass& pass = passes_[0];
+  for (const StarShading& stars : shading_.stars)
+    for (std::size_t i = 0; i < width_; ++i)
+      if (here.id[i] == stars.id && pass.appearance[i] != kUnseen) visible_[i] = pass.weight[i];
 }
 
 /// Every coat gets its part of the weight of its pixel, times how bright it is at its time.
@@ -252,8 +263,10 @@ void LineShader::shade_pass(const Pass& pass, std::size_t row, std::size_t rank,
   }
 }
 
-void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept) {
+void LineShader::shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept, float* visible) {
   kept_ = kept;
+  visible_ = visible;
+  if (visible != nullptr) std::fill_n(visible, width_, 0.0f);
   for (Rgbx* sum : {display, physical})
     if (sum != nullptr) std::memset(static_cast<void*>(sum), 0, width_ * sizeof(Rgbx));
   std::ranges::fill(transmittance_, 1.0f);

@@ -33,7 +33,8 @@ class LineShader {
 
   /// Writes the line's pixels; `physical` and `display` may be null where nothing is. Colours are kept only
   /// of lines of one crossing a pixel, and where keeps_colors().
-  void shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept = {});
+  /// `visible`, unless null, gets what share of the light of skies with stars comes through.
+  void shade(std::size_t row, Rgbx* display, Rgbx* physical, KeptColors kept = {}, float* visible = nullptr);
 
  private:
   /// One of the appearances that each pixel of a rank shows.
@@ -51,6 +52,7 @@ class LineShader {
   void find_opacities(std::size_t row, std::size_t rank, const Layer& here);
   void find_parts(Pass& pass, std::size_t row, std::size_t rank, const Layer& here);
   void find_alpha(Pass& pass, const std::array<Layer, 3>& lines, std::size_t first, std::size_t last);
+  void note_visible(const Layer& here);
   void share_weights();
   Pass& pass_at(std::size_t number);
   void look_up(const std::array<Layer, 3>& lines, const Texture& texture, std::size_t first,
@@ -70,6 +72,7 @@ class LineShader {
   Layers layers_;
   Illumination illumination_;
   KeptColors kept_;
+  float* visible_ = nullptr;
   bool whole_weights_ = false;  ///< the first pass has weights of 1
   bool layered_;                ///< weights are more than transmittance times recorded opacity
   Clocks clocks_;

@@ -47,7 +47,8 @@ bool has_display(const Shading& shading) {
 }
 
 bool has_physical(const Shading& shading) {
-  return std::ranges::any_of(shading.appearances, [](const Appearance& one) { return radiates(one, true); });
+  return !shading.stars.empty() ||
+         std::ranges::any_of(shading.appearances, [](const Appearance& one) { return radiates(one, true); });
 }
 
 }  // namespace nullcone::postrender

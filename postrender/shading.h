@@ -8,6 +8,7 @@
 #include "postrender/emission.h"
 #include "postrender/moving_texture.h"
 #include "postrender/reflection.h"
+#include "postrender/star_shading.h"
 
 namespace nullcone::postrender {
 
@@ -50,6 +51,7 @@ struct Shading {
   std::vector<std::string> notes;      ///< what the user should know of it
   std::vector<LampShading> lamps = {};
   std::vector<LampState> lamp_states = {};
+  std::vector<StarShading> stars = {};
   bool operator==(const Shading&) const = default;
 };
 

@@ -60,18 +60,6 @@ std::int16_t half_float(float x) {
   return static_cast<std::int16_t>(x < 0 ? half | 0x8000U : half);
 }
 
-/// Binary exponent that brings the largest component (and an alpha of 1) to [2^14, 2^15), the top of half
-/// floats.
-int normalising_exponent(const TextureLevel& full) {
-  float largest = full.alpha.empty() ? 0.0f : 1.0f;
-  for (const Rgb c : full.texels)
-    for (const float component : {c.r, c.g, c.b})
-      if (std::isfinite(component)) largest = std::max(largest, std::abs(component));
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  return std::clamp(15 - exponent, -14, 60);
-}
-
 std::int32_t texels_a_row_of_tiles(const TextureLevel& level) {
   return (level.width + kTile - 1) / kTile * kTileTexels;
 }
@@ -115,17 +103,33 @@ std::vector<TextureLevel> halvings(TextureLevel full) {
   return out;
 }
 
-Pyramid make_pyramid(TextureLevel full) {
-  const int exponent = normalising_exponent(full);
+int normalising_exponent(std::span<const TextureLevel> pictures) {
+  float largest = 0;
+  for (const TextureLevel& picture : pictures) {
+    if (!picture.alpha.empty()) largest = std::max(largest, 1.0f);
+    for (const Rgb c : picture.texels)
+      for (const float component : {c.r, c.g, c.b})
+        if (std::isfinite(component)) largest = std::max(largest, std::abs(component));
+  }
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return std::clamp(15 - exponent, -14, 60);
+}
+
+Pyramid tiled(std::span<const TextureLevel> levels, int exponent) {
   Pyramid out;
   out.unit = std::ldexp(1.0f, -exponent);
-  const std::vector<TextureLevel> levels = halvings(std::move(full));
   for (const TextureLevel& level : levels) {
     out.levels.push_back({level.width, level.height, texels_a_row_of_tiles(level),
                           static_cast<std::int32_t>(out.texels.size())});
     append_tiles(level, exponent, out.texels);
   }
   return out;
+}
+
+Pyramid make_pyramid(TextureLevel full) {
+  const int exponent = normalising_exponent({&full, 1});
+  return tiled(halvings(std::move(full)), exponent);
 }
 
 }  // namespace nullcone::postrender

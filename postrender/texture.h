@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "postrender/huge_pages.h"
@@ -59,6 +60,12 @@ struct Pyramid {
 
 Pyramid make_pyramid(TextureLevel full);
 
+/// Binary exponent that brings the largest component (and an alpha of 1) to [2^14, 2^15), the top of half
+/// floats.
+int normalising_exponent(std::span<const TextureLevel> pictures);
+/// Levels of any sizes, in the order given, times 2^exponent.
+Pyramid tiled(std::span<const TextureLevel> levels, int exponent);
+
 /// (u, v) -> (u, v) * scale + offset.
 struct UvTransform {
   std::array<float, 2> offset = {0, 0}, scale = {1, 1};
@@ -100,6 +107,13 @@ struct ImageTexture {
   Filter filter = Filter::mipmap;
   bool alpha = false;  ///< the image has alpha, which lets light through
   bool operator==(const ImageTexture&) const = default;
+};
+
+/// Six faces of a cube about the observer, with borders (cube_map.h): those of level k at 6 k.
+struct CubeTexture {
+  std::shared_ptr<const Pyramid> faces;
+  Filter filter = Filter::mipmap;  ///< not anisotropic
+  bool operator==(const CubeTexture&) const = default;
 };
 
 }  // namespace nullcone::postrender

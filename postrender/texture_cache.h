@@ -11,6 +11,9 @@
 
 namespace nullcone::postrender {
 
+/// Time and size of a file; empty where it cannot be looked at: then reading it says why.
+std::string file_stamp(const std::string& path);
+
 /// Keeps textures by path (with and without their alpha, by materials), and reads a file again when its time
 /// or size has changed. Any number of threads may use it.
 class TextureCache {
@@ -18,6 +21,10 @@ class TextureCache {
   /// Throws InputError as read_texture() does.
   std::shared_ptr<const Pyramid> get(const std::string& path, const std::string& pointer, bool alpha,
                                      MaterialGroup materials = {});
+
+  /// The same of a cube map; throws as read_cube_faces() does.
+  std::shared_ptr<const Pyramid> get_cube(const std::vector<std::string>& files,
+                                          const std::vector<std::string>& pointers);
 
   /// Forgets textures that nobody else holds, while they take more than `most_bytes` together.
   void prune(std::size_t most_bytes = std::size_t{1} << 30);

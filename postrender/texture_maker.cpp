@@ -24,6 +24,10 @@ Texture TextureMaker::make(const TextureLook& look) {
   if (const auto* color = std::get_if<ColorTexture>(&look)) return *color;
   if (const auto* board = std::get_if<CheckerboardTexture>(&look)) return *board;
   if (const auto* image = std::get_if<ImageLook>(&look)) return still(*image);
+  const auto cube_of = [&](const CubeLook& cube) {
+    return CubeTexture{cache_.get_cube(cube.files, cube.pointers), cube.filter};
+  };
+  if (const auto* cube = std::get_if<CubeLook>(&look)) return cube_of(*cube);
   const MovingLook& moving = std::get<MovingLook>(look);
   auto parts = std::make_shared<MovingTexture::Parts>();
   parts->placement = moving.placement;
@@ -34,6 +38,8 @@ Texture TextureMaker::make(const TextureLook& look) {
       const bool alone = moving.frames.size() == 1;
       parts->frames.emplace_back(alone ? still(*image) : without_image(*image));
       if (!alone) film.looks.push_back(*image);
+    } else if (const auto* cube = std::get_if<CubeLook>(&frame)) {
+      parts->frames.emplace_back(cube_of(*cube));
     } else if (const auto* board = std::get_if<CheckerboardTexture>(&frame)) {
       parts->frames.emplace_back(*board);
     } else {

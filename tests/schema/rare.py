@@ -38,6 +38,8 @@ def add(held):
         "no file": {"sensor": {"file": "none.csv"}},
         "keys": {"objects": {"ball": {"opacity": {"keyframes": [[0, 0], [1, 2]], "by": "t"}}}},
         "one key": {"objects": {"ball": {"spectrum": {"type": "equal_energy", "radiance": {"keyframes": [[0, 1]], "by": "t"}}}}},
+        "stars": {"objects": {"sky": {"stars": {"random": [{"count": 3000000}, {"count": 3000000}]}}}},
+        "magnitudes": {"objects": {"sky": {"stars": {"random": [{"count": 3, "magnitudes": [5, 4]}]}}}},
         "axis": {"objects": {"ball": {"texture": {"type": "image", "file": "a", "rotate_deg": {"axis": [0, 0, 0], "angle_deg": 0}}}}},
     }.items():
         held.add(what, "look", look)

@@ -202,6 +202,19 @@ LOOKS = {
         },
         "lights": {"sun": {"spectrum": BLACK}},
     },
+    "stars": {
+        "objects": {
+            "ball": {"texture": {"type": "cube_map", "filter": "mipmap", "faces": {
+                "right": "a.png", "left": "a.png", "up": "a.png", "down": "a.png", "front": "a.png", "back": "a.png"}}},
+            "sky": {"stars": {
+                "file": "stars.csv", "rotate_deg": {"axis": [0, 0, 1], "angle_deg": 30}, "intensity": 2, "size_px": 1,
+                "most_magnified": 100, "random": [
+                    {"count": 10, "seed": 5, "magnitudes": [1, 6], "slope": 0.5, "temperatures_K": [4000, 8000]},
+                    {"count": 10, "around_deg": [180, 0], "spread_deg": 0.5}]}},
+            "box": {"stars": {"random": [{"count": 3}], "rotate_deg": [0, 0, 5]}},
+            "board": {"texture": {"type": "cube_map", "file": "a.png", "filter": "bilinear", "rotate_deg": [0, 10, IN_TIME]}},
+        },
+    },
     "spectra": {
         "objects": {
             "ball": {"spectrum": {"type": "channels", "spectra": [

@@ -31,6 +31,8 @@ UNSAID = [
     (r"expected a number above 1.01 times from", "order of numbers"),
     (r"expected a number greater than from", "order of numbers"),
     (r"\[first, last\], and at most 100000", "order of numbers"),
+    (r"\[from, to\] in increasing order", "order of numbers"),
+    (r"expected at most 4 million stars", "sums of numbers"),
     (r"expected a greater luminance than before", "order of points"),
     (r"expected a last luminance from 1e-20", "the last point"),
     (r"no light that could be seen as white", "chromaticities"),
