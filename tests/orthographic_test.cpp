@@ -31,7 +31,7 @@ json placed(const json& shape, const json& centre, const char* name = "it") {
   return {{"name", name}, {"shape", shape}, {"placing", {{"type", "coordinate"}, {"centre", centre}}}};
 }
 
-json scene_of(const std::string& metric, const json& camera, const json& objects) {
+json scene_of(const std::string& metric, const json& camera, const std::vector<json>& objects) {
   return {{"metric", {{"name", metric}}},
           {"observer", {{"event", {0, 0, 0, 0}}}},
           {"camera", camera},
@@ -76,9 +76,10 @@ TEST(Orthographic, ASphereIsADiscOfItsRadius) {
     std::size_t met = 0;
     for (const Seen& one : seen(traced)) {
       const Vec3<double> X = place_of(traced, one), to = C - X;
-      const double along = dot(to, n), aside2 = dot(to, to) - along * along, room = 1.1 * 1.1 - aside2;
+      const Vec3<double> aside = cross(to, n);
+      const double along = dot(to, n), room = 1.1 * 1.1 - dot(aside, aside);
       ASSERT_GT(room, 0);
-      const double Z = along - std::sqrt(room), rounding = 1e-15 * far / std::sqrt(room) + 1e-13;
+      const double Z = along - std::sqrt(room), rounding = 1e-16 * far * (1 + 1 / std::sqrt(room)) + 1e-13;
       ASSERT_NEAR(one.hit.Z, Z, 10 * rounding) << far;
       ASSERT_NEAR(one.hit.t, -Z, 10 * rounding);
       ASSERT_EQ(one.hit.shift, 1);
@@ -96,19 +97,18 @@ TEST(Orthographic, ASphereIsADiscOfItsRadius) {
 
 /// The edge of that disc, found by halving: the pixel of a film with two stands at a quarter of its extent.
 TEST(Orthographic, TheSilhouetteIsExact) {
-  for (const char* metric : {"minkowski"})
-    for (const double far : {2.0, 700.0}) {
-      double hits = 0.1, misses = 10;
-      for (int i = 0; i < 60; ++i) {
-        const double extent = 0.5 * (hits + misses);
-        const auto traced = trace_text(
-            scene_of(metric, film(extent, 2, 1), {placed({{"type", "sphere"}, {"radius", 0.7}}, {far, 0, 0})})
-                .dump(),
-            1);
-        (traced.hits() == 2 ? hits : misses) = extent;
-      }
-      EXPECT_NEAR(0.25 * hits, 0.7, 1e-12) << far;
+  for (const double far : {2.0, 700.0}) {
+    double hits = 0.1, misses = 10;
+    for (int i = 0; i < 60; ++i) {
+      const double extent = 0.5 * (hits + misses);
+      const auto traced = trace_text(scene_of("minkowski", film(extent, 2, 1),
+                                              {placed({{"type", "sphere"}, {"radius", 0.7}}, {far, 0, 0})})
+                                         .dump(),
+                                     1);
+      (traced.hits() == 2 ? hits : misses) = extent;
     }
+    EXPECT_NEAR(0.25 * hits, 0.7, 1e-12) << far;
+  }
 }
 
 TEST(Orthographic, ACubeHasNoPerspective) {
@@ -123,10 +123,10 @@ TEST(Orthographic, ACubeHasNoPerspective) {
       ASSERT_NEAR(one.hit.Z, far - 0.5, 1e-15 * far);  // the side faces are not seen
       ASSERT_NEAR(one.hit.mu, 1, 1e-15);
       pixels.emplace_back(one.x, one.y);
-      // From pixel to pixel to the right, y falls; downwards, z does.
+      // Across a cell of three times two.
       const auto& d = one.detail.duv;
-      ASSERT_NEAR(std::fabs(d[0]) + std::fabs(d[1]), 3.0 / 60 / 1.2, 1e-12);
-      ASSERT_NEAR(std::fabs(d[2]) + std::fabs(d[3]), 3.0 / 60 / 0.8, 1e-12);
+      ASSERT_NEAR(std::fabs(d[0]) + std::fabs(d[1]), 3.0 / 60 / 1.2 / 3, 1e-12);
+      ASSERT_NEAR(std::fabs(d[2]) + std::fabs(d[3]), 3.0 / 60 / 0.8 / 2, 1e-12);
     }
     EXPECT_EQ(pixels.size(), 24U * 16U);
     if (first.empty()) first = pixels;
@@ -218,23 +218,46 @@ TEST(Orthographic, TheSkyIsOneDirection) {
   }
 }
 
+std::vector<double> parameters_of(const Scene& scene) {
+  std::vector<double> out;
+  for (const auto& p : find_spacetime(scene.metric).description().parameters)
+    out.push_back(scene.metric_parameters.at(std::string(p.name)));
+  return out;
+}
+
+/// An event on the ray through a point of the picture: where to put objects that shall be seen.
+Event on_ray(const json& scene, double x, double y, double lambda) {
+  const auto metrics = metric_descriptions();
+  const Scene read = read_scene(scene.dump(), "test", metrics);
+  const Spacetime& spacetime = find_spacetime(read.metric);
+  const auto parameters = parameters_of(read);
+  const auto ray = spacetime.camera_ray(parameters, read.camera, read.observer, x, y);
+  return spacetime.geodesic(parameters, ray.event, ray.past, {&lambda, 1}, nullptr, ray.frame)[0].event;
+}
+json place_on_ray(const json& scene, double x, double y, double lambda) {
+  const Event event = on_ray(scene, x, y, lambda);
+  return {event[1], event[2], event[3]};
+}
+
 /// In the Gödel universe, of observers at rest and in motion.
 json goedel_scene(const json& velocity, const char* paths) {
-  json scene = scene_of(
-      "goedel", film(1.6, 31, 21, {1, 0.5, 0.3}),
-      {placed({{"type", "sphere"}, {"radius", 0.35}}, {1.2, 1.3, 0.4}, "ball"),
-       placed({{"type", "box"}, {"edges", {0.5, 0.4, 0.6}}}, {0.9, 0.2, -0.2}, "box"),
-       {{"name", "thrown"},
-        {"shape", {{"type", "sphere"}, {"radius", 0.15}}},
-        {"placing",
-         {{"type", "local"},
-          {"axes", "gyroscope"},
-          {"worldline",
-           {{"type", "geodesic"}, {"event", {1, 0.8, 0.8, 0.1}}, {"velocity", {0.3, -0.2, 0.1}}}}}}}});
+  json scene = scene_of("goedel", film(1.6, 31, 21, {1, 0.5, 0.3}),
+                        {placed({{"type", "sphere"}, {"radius", 0.25}}, {9, 9, 9}, "ball")});
   scene["observer"] = {{"event", {2, 0.4, 0.3, 0.1}}, {"velocity", velocity}};
   scene["paths"] = paths;
   scene["accuracy"] = "reference";
-  if (paths[0] == 'i') scene["objects"].erase(2);
+  const json ball = place_on_ray(scene, 15.5, 10.5, 0.9), box = place_on_ray(scene, 25, 6, 0.7),
+             event = on_ray(scene, 6, 15, 0.6);
+  scene["objects"][0]["placing"]["centre"] = ball;
+  scene["objects"].push_back(placed({{"type", "box"}, {"edges", {0.3, 0.4, 0.3}}}, box, "box"));
+  if (paths[0] == 'i') return scene;  // what moves has closed paths alone
+  scene["objects"].push_back(
+      {{"name", "thrown"},
+       {"shape", {{"type", "sphere"}, {"radius", 0.15}}},
+       {"placing",
+        {{"type", "local"},
+         {"axes", "gyroscope"},
+         {"worldline", {{"type", "geodesic"}, {"event", event}, {"velocity", {0.3, -0.2, 0.1}}}}}}});
   return scene;
 }
 
@@ -318,10 +341,9 @@ TEST(Orthographic, DifferentialsAreThoseBetweenRays) {
     for (const json& velocity : {json{0, 0, 0}, json{0.4, -0.3, 0.2}}) {
       const double pixel = 4e-3, part = paths[0] == 'c' ? 0.0625 : 0.5;
       json scene = goedel_scene(velocity, paths);
-      scene["observer"]["event"][3] = 0.3;
-      scene["camera"] = film(3 * pixel, 3, 3, {1, 1, 0.1});
+      scene["camera"] = film(3 * pixel, 3, 3, {1, 0.5, 0.3});
       const auto coarse = seen(trace_text(scene.dump()));
-      scene["camera"] = film(3 * part * pixel, 3, 3, {1, 1, 0.1});
+      scene["camera"] = film(3 * part * pixel, 3, 3, {1, 0.5, 0.3});
       const auto fine = seen(trace_text(scene.dump()));
       ASSERT_EQ(coarse.size(), 9U);
       ASSERT_EQ(fine.size(), 9U);
@@ -338,17 +360,17 @@ TEST(Orthographic, DifferentialsAreThoseBetweenRays) {
 TEST(Orthographic, WithoutIsometriesToFirstOrder) {
   for (const std::string metric : {"kerr_schild", "ellis_wormhole"}) {
     json scene = scene_of(metric, film(12, 25, 15, {-1, 0.1, -0.05}),
-                          {placed({{"type", "sphere"}, {"radius", 2}}, {-9, 4, 1}, "ball"),
-                           placed({{"type", "box"}, {"edges", {2, 3, 2}}}, {6, -3, -1}, "box")});
+                          {placed({{"type", "sphere"}, {"radius", 2}}, {99, 99, 99}, "ball")});
     scene["observer"] = {{"event", {5, 16, 1, 2}}, {"velocity", {0.2, 0.5, -0.1}}};
     scene["accuracy"] = "reference";
     if (metric == "kerr_schild") scene["metric"]["spin"] = 0.8;
+    const json ball = place_on_ray(scene, 8, 6, 25), box = place_on_ray(scene, 20, 10, 8);
+    scene["objects"][0]["placing"]["centre"] = ball;
+    scene["objects"].push_back(placed({{"type", "box"}, {"edges", {2, 3, 2}}}, box, "box"));
     const Traced traced = trace_text(scene.dump());
     expect_no_doubts(traced);
     const Spacetime& spacetime = find_spacetime(metric);
-    std::vector<double> parameters;
-    for (const auto& p : spacetime.description().parameters)
-      parameters.push_back(traced.scene.metric_parameters.at(std::string(p.name)));
+    const auto parameters = parameters_of(traced.scene);
     const Vec4<double> O{traced.scene.observer.event},
         u = four_velocity(Vec3<double>{traced.scene.observer.velocity});
     const Event past = (-seen_photon(u, Vec3<double>{traced.scene.camera.forward})).c;
@@ -373,17 +395,15 @@ TEST(Orthographic, WithoutIsometriesToFirstOrder) {
 
 /// A film through a black hole: no observer is at rest in there, but those at right angles to t = const are.
 TEST(Orthographic, WhereThereIsNoObserverThereIsNoRay) {
-  json scene =
-      scene_of("kerr_schild", film(10, 30, 30, {0, 0, 1}), {{{"name", "sky"}, {"shape", {{"type", "sky"}}}}});
+  json scene = scene_of("kerr_schild", film(10, 30, 30, {0, 0.001, 1}),
+                        {{{"name", "sky"}, {"shape", {{"type", "sky"}}}}});
   scene["observer"]["event"] = {0, 3.03, 0, 0};
   scene["accuracy"] = "draft";
   const Traced traced = trace_text(scene.dump());
   expect_no_doubts(traced);
   // Of a hole of mass 1 at the origin; X is at right angles to the radius or along it, but for its stretch.
   const Spacetime& hole = find_spacetime("kerr_schild");
-  std::vector<double> parameters;
-  for (const auto& p : hole.description().parameters)
-    parameters.push_back(traced.scene.metric_parameters.at(std::string(p.name)));
+  const auto parameters = parameters_of(traced.scene);
   const auto axes = hole.static_tetrad(parameters, {0, 3.03, 0, 0});
   std::size_t none = 0;
   for (int y = 0; y < 30; ++y)
@@ -405,13 +425,29 @@ TEST(Orthographic, WhereThereIsNoObserverThereIsNoRay) {
   EXPECT_EQ(normal.rays_with(Status::not_finite), 0U);
 }
 
+/// From afar the shadow of a black hole is a disc of radius 3 sqrt3 M: there parallel rays know their impact
+/// parameter, to M/distance.
+TEST(Orthographic, AHolesShadowHasItsRadius) {
+  json scene =
+      scene_of("kerr_schild", film(1, 2, 1, {-1, 0, 0}), {{{"name", "sky"}, {"shape", {{"type", "sky"}}}}});
+  scene["observer"]["event"] = {0, 1e5, 0, 0};
+  double falls = 1, escapes = 60;
+  for (int i = 0; i < 30; ++i) {
+    const double extent = 0.5 * (falls + escapes);
+    scene["camera"]["extent"] = extent;
+    const Traced traced = trace_text(scene.dump(), 1);
+    (traced.rays_with(Status::captured) == 2 ? falls : escapes) = extent;
+  }
+  EXPECT_NEAR(0.25 * falls, 3 * std::sqrt(3), 2e-4);  // some M/distance
+}
+
 /// Films pierce objects: rays that start inside meet the surface from inside.
 TEST(Orthographic, RaysThatStartInsideLeave) {
-  const json shapes = {{{"type", "sphere"}, {"radius", 1}},
-                       {{"type", "box"}, {"edges", {2, 2, 2}}},
-                       {{"type", "cylinder"}, {"radius", 1}, {"height", 2}},
-                       {{"type", "sphere"}, {"radius", 1}, {"dome", true}},
-                       {{"type", "box"}, {"edges", {2, 2, 2}}, {"dome", true}}};
+  const std::vector<json> shapes = {{{"type", "sphere"}, {"radius", 1}},
+                                    {{"type", "box"}, {"edges", {2, 2, 2}}},
+                                    {{"type", "cylinder"}, {"radius", 1}, {"height", 2}},
+                                    {{"type", "sphere"}, {"radius", 1}, {"dome", true}},
+                                    {{"type", "box"}, {"edges", {2, 2, 2}}, {"dome", true}}};
   for (const std::string metric : {"minkowski", "goedel"})
     for (const char* paths : {"closed", "integrated"})
       for (const bool transparent : {false, true})
@@ -427,22 +463,29 @@ TEST(Orthographic, RaysThatStartInsideLeave) {
           const Traced traced = trace_text(scene.dump());
           expect_no_doubts(traced);
           const double allowed = metric == "goedel" ? 1e-3 : paths[0] == 'c' ? 1e-12 : 1e-8;
-          std::size_t met = 0;
+          // Half of what of a parallel to x lies in the shape; NaN: nothing does.
+          const auto half_at = [&](const Vec3<double>& X) {
+            const double y = X[1] - (dome ? 0 : 2), z = X[2], none = std::nan("");
+            if (shape["type"] == "sphere") return std::sqrt(1 - y * y - z * z);
+            if (std::fabs(y) > 1 || std::fabs(z) > 1) return none;
+            return shape["type"] == "cylinder" ? std::sqrt(1 - y * y) : 1.0;
+          };
+          std::size_t expected = 0, met = 0;
+          for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 40; ++x) {
+              const double half = half_at(place_on_film(traced.scene.camera, x + 0.5, y + 0.5));
+              if (half >= 0) expected += transparent && half < 0.2 ? 2 : 1;
+            }
           for (const Seen& one : seen(traced)) {
-            const Vec3<double> X = place_of(traced, one);
-            const double y = X[1] - (dome ? 0 : 2), z = X[2];
-            const double half = shape["type"] == "sphere"     ? std::sqrt(std::max(1 - y * y - z * z, 0.0))
-                                : shape["type"] == "cylinder" ? std::sqrt(std::max(1 - y * y, 0.0))
-                                                              : 1.0;
-            // The surface stands ahead at 0.2 + half; what is at 0.2 - half lies behind the film, if it cuts.
-            const double ahead = 0.2 - half > 0 ? 0.2 - half : 0.2 + half;
-            const double other = 0.2 + half;
-            const bool first = std::fabs(one.hit.Z - ahead) < allowed * (1 + 1 / (half + 1e-3));
-            const bool second = std::fabs(one.hit.Z - other) < allowed * (1 + 1 / (half + 1e-3));
-            ASSERT_TRUE(first || (transparent && second))
-                << metric << paths << shape << one.hit.Z << " " << ahead;
+            // The nearer surface lies behind the film where the film cuts the shape.
+            const double half = half_at(place_of(traced, one)), rounding = allowed * (1 + 1 / (half + 1e-3));
+            const double nearer = 0.2 - half, farther = 0.2 + half;
+            const bool is_nearer = nearer > 0 && std::fabs(one.hit.Z - nearer) < rounding;
+            const bool is_farther = (nearer < 0 || transparent) && std::fabs(one.hit.Z - farther) < rounding;
+            ASSERT_TRUE(is_nearer || is_farther) << metric << paths << shape << one.hit.Z << " " << nearer;
             ++met;
           }
+          EXPECT_EQ(met, expected) << metric << paths << shape;
           EXPECT_GT(met, 60U) << shape;
         }
 }

@@ -32,23 +32,24 @@ class Launches {
 
   /// Lists the rays that come near the object's bounding ball at all.
   std::size_t list_candidates(BandRays& rays) const {
-    std::size_t listed = 0;
-    for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
-      const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
-      Mask<S> may_meet = k[0] == k[0];
-      if (!rays.from_film()) may_meet = placing_.may_meet(launch_, k);
-      if (!any(may_meet)) continue;
-      std::array<bool, Lanes<S>::count> near{};
-      const auto start = [&](std::size_t c) { return Lanes<S>::load(rays.start[c] + i); };
-      Lanes<S>::store(may_meet & (ray_along(k, start).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i)),
-                      near.data());
-      for (std::size_t lane = 0; lane < near.size(); ++lane)
-        if (near[lane] && i + lane < rays.count) rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
-    }
-    return listed;
+    const auto near = [&](const auto& ray, std::size_t i) {
+      return ray.clearance(S(0.0)) < Lanes<S>::load(rays.limit + i);
+    };
+    if (rays.from_film())
+      return list(rays, [&](const Vec4<S>& k, std::size_t i) {
+        const auto start = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.start[c] + i); });
+        return near(placing_.ray(placing_.launch(start), k), i);
+      });
+    const auto launch = launch_;  // what depends on it alone is worked out once
+    return list(rays, [&](const Vec4<S>& k, std::size_t i) {
+      const Mask<S> may_meet = placing_.may_meet(launch, k);
+      return any(may_meet) ? may_meet & near(placing_.ray(launch, k), i) : may_meet;
+    });
   }
   auto ray(const Group<S>& group) const {
-    return ray_along(group.load_k(rays_), [&](std::size_t c) { return group.load(rays_.start[c]); });
+    const Vec4<S> k = group.load_k(rays_);
+    return rays_.from_film() ? placing_.ray(placing_.launch(group.load_start(rays_)), k)
+                             : placing_.ray(launch_, k);
   }
   /// What rounding leaves of a length of lambda at the start.
   S resolution(const Group<S>& group) const {
@@ -56,10 +57,20 @@ class Launches {
   }
 
  private:
-  template <class Start>
-  auto ray_along(const Vec4<S>& k, const Start& start) const {
-    return rays_.from_film() ? placing_.ray(placing_.launch(Vec4<S>::map(start)), k)
-                             : placing_.ray(launch_, k);
+  template <class Near>
+  static std::size_t list(BandRays& rays, const Near& near) {
+    std::size_t listed = 0;
+    for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
+      const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
+      const Mask<S> found = near(k, i);
+      if (!any(found)) continue;
+      std::array<bool, Lanes<S>::count> is_near{};
+      Lanes<S>::store(found, is_near.data());
+      for (std::size_t lane = 0; lane < is_near.size(); ++lane)
+        if (is_near[lane] && i + lane < rays.count)
+          rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
+    }
+    return listed;
   }
 
   const Placing& placing_;
@@ -76,15 +87,12 @@ Mask<S> starts_inside(const Ray& ray, const Shape& shape, const S& start) {
   return shape.is_sheet() || !any(near) ? near & !near : near & shape.holds(first.X);
 }
 
-/// Finds where the rays meet one object, and keeps what is nearer than anything before. The rays go on in
-/// rounds of a few steps; those that have ended make room for others after each round, so that packs stay
-/// full.
-template <class S, class Placing, class Body, class Shape>
-void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, const Vec4<double>& event,
-            BandRays& rays) {
-  constexpr int kRound = 4;
-  const Launches<S, Placing> launches(object.placing, event, rays);
-  std::size_t listed = launches.list_candidates(rays);
+/// Takes the listed rays towards an object in rounds of a few steps, until all have ended, and keeps what is
+/// nearer than anything before; those that have ended make room for others after each round, so that packs
+/// stay full. `advance_group(group, limit, search)` takes the steps.
+template <class S, class Advance>
+void search_in_rounds(std::uint32_t number, std::size_t listed, BandRays& rays,
+                      const Advance& advance_group) {
   for (std::size_t i = 0; i < listed; ++i) rays.lambda[rays.list[i]] = rays.taken[rays.list[i]] = 0;
   while (listed > 0) {
     std::size_t left = 0;
@@ -94,14 +102,7 @@ void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, co
       Search<S> search(limit);
       search.lambda = group.load(rays.lambda);
       search.steps = group.load(rays.taken);
-      const auto path = launches.ray(group);
-      const S resolution = launches.resolution(group);
-      if (rays.from_film()) {  // which may pierce objects
-        const Onward<S, Shape> shape{object.shape, starts_inside(path, object.shape, S(0.0))};
-        advance(path, shape, limit, resolution, kRound, search);
-      } else {
-        advance(path, object.shape, limit, resolution, kRound, search);
-      }
+      advance_group(group, limit, search);
       group.store(search.lambda, rays.lambda);
       group.store(search.steps, rays.taken);
       std::array<bool, Lanes<S>::count> active{}, met{}, given_up{};
@@ -123,6 +124,28 @@ void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, co
     }
     listed = left;
   }
+}
+
+/// Finds where the rays meet one object. Films may pierce it: rays that start inside meet it from inside.
+template <class S, class Placing, class Body, class Shape>
+void search(const Placed<Placing, Body, Shape>& object, std::uint32_t number, const Vec4<double>& event,
+            BandRays& rays) {
+  constexpr int kRound = 4;
+  const Launches<S, Placing> launches(object.placing, event, rays);
+  const std::size_t listed = launches.list_candidates(rays);
+  if (rays.from_film()) {
+    search_in_rounds<S>(number, listed, rays, [&](const Group<S>& group, const S& limit, Search<S>& search) {
+      const auto ray = launches.ray(group);
+      const Onward<S, Shape> shape{object.shape, starts_inside(ray, object.shape, S(0.0))};
+      advance(ray, shape, limit, launches.resolution(group), kRound, search);
+    });
+    return;
+  }
+  const auto launch = object.placing.launch(event);
+  const S resolution(4e-15 * norm(spatial(event)));
+  search_in_rounds<S>(number, listed, rays, [&](const Group<S>& group, const S& limit, Search<S>& search) {
+    advance(object.placing.ray(launch, group.load_k(rays)), object.shape, limit, resolution, kRound, search);
+  });
 }
 
 NULLCONE_KERNEL_END
