@@ -499,14 +499,19 @@ TEST(Orthographic, LookbackInTimeCountsFromTheObservation) {
         {"placing",
          {{"type", "coordinate"}, {"centre", {0, 7, 0}}, {"z_axis", {0, -1, 0}}, {"y_axis", {0, 0, 1}}}}}});
   scene["observer"] = {{"event", {3, 0, 0, 0}}, {"velocity", {0.6, 0, 0}}};
-  scene["max_lookback"] = {{"t", 10}};
+  scene["max_lookback"] = {{"t", 8}};
   for (const char* paths : {"closed", "integrated"}) {
     scene["paths"] = paths;
     const Traced traced = trace_text(scene.dump());
-    std::size_t expected = 0;
-    for (int x = 0; x < 40; ++x) expected += 1.25 * (0.6 * (x + 0.5 - 20) - 7) >= -10 ? 2 : 0;
+    std::size_t expected = 0, too_early = 0, stay = 0;
+    for (int x = 0; x < 40; ++x) too_early += 1.25 * 0.6 * (x + 0.5 - 20) < -8 ? 2 : 0;
+    for (const TracedBand& band : traced.bands)
+      for (const RayRecord& ray : band.rays) stay += ray.steps == 0;
+    EXPECT_EQ(stay, too_early);
+    EXPECT_GT(too_early, 10U);
+    for (int x = 0; x < 40; ++x) expected += 1.25 * (0.6 * (x + 0.5 - 20) - 7) >= -8 ? 2 : 0;
     EXPECT_EQ(traced.hits(), expected) << paths;
-    EXPECT_EQ(traced.rays_with(Status::lookback_reached), 80 - expected);  // some start too early already
+    EXPECT_EQ(traced.rays_with(Status::lookback_reached), 80 - expected);
     EXPECT_GT(expected, 10U);
   }
 }
