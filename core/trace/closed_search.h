@@ -32,19 +32,17 @@ class Launches {
 
   /// Lists the rays that come near the object's bounding ball at all.
   std::size_t list_candidates(BandRays& rays) const {
-    const auto near = [&](const auto& ray, std::size_t i) {
-      return ray.clearance(S(0.0)) < Lanes<S>::load(rays.limit + i);
-    };
     if (rays.from_film())
-      return list(rays, [&](const Vec4<S>& k, std::size_t i) {
-        const auto start = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.start[c] + i); });
-        return near(placing_.ray(placing_.launch(start), k), i);
-      });
+      return list(
+          rays, [](const Vec4<S>& k) { return k[0] == k[0]; },
+          [&](const Vec4<S>& k, std::size_t i) {
+            const auto start = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.start[c] + i); });
+            return placing_.ray(placing_.launch(start), k);
+          });
     const auto launch = launch_;  // what depends on it alone is worked out once
-    return list(rays, [&](const Vec4<S>& k, std::size_t i) {
-      const Mask<S> may_meet = placing_.may_meet(launch, k);
-      return any(may_meet) ? may_meet & near(placing_.ray(launch, k), i) : may_meet;
-    });
+    return list(
+        rays, [&](const Vec4<S>& k) { return placing_.may_meet(launch, k); },
+        [&](const Vec4<S>& k, std::size_t) { return placing_.ray(launch, k); });
   }
   auto ray(const Group<S>& group) const {
     const Vec4<S> k = group.load_k(rays_);
@@ -57,18 +55,18 @@ class Launches {
   }
 
  private:
-  template <class Near>
-  static std::size_t list(BandRays& rays, const Near& near) {
+  template <class Sieve, class RayAlong>
+  static std::size_t list(BandRays& rays, const Sieve& sieve, const RayAlong& ray_along) {
     std::size_t listed = 0;
     for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
       const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
-      const Mask<S> found = near(k, i);
-      if (!any(found)) continue;
-      std::array<bool, Lanes<S>::count> is_near{};
-      Lanes<S>::store(found, is_near.data());
-      for (std::size_t lane = 0; lane < is_near.size(); ++lane)
-        if (is_near[lane] && i + lane < rays.count)
-          rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
+      const Mask<S> may_meet = sieve(k);
+      if (!any(may_meet)) continue;
+      std::array<bool, Lanes<S>::count> near{};
+      Lanes<S>::store(may_meet & (ray_along(k, i).clearance(S(0.0)) < Lanes<S>::load(rays.limit + i)),
+                      near.data());
+      for (std::size_t lane = 0; lane < near.size(); ++lane)
+        if (near[lane] && i + lane < rays.count) rays.list[listed++] = static_cast<std::uint32_t>(i + lane);
     }
     return listed;
   }
