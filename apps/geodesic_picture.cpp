@@ -109,7 +109,8 @@ void add_marks(const Inquiry& inquiry, Drawing& drawing) {
   const std::size_t marks = labelled ? 1 : inquiry.members.size();
   for (std::size_t i = 0; i < marks; ++i) {
     const Event& at = inquiry.members[i].ray.event;
-    const std::string label = inquiry.traced ? "observer" : i == 0 ? "event, λ = 0" : "";
+    const std::string traced = inquiry.traced && has_film(inquiry.traced->scene.camera) ? "film" : "observer";
+    const std::string label = inquiry.traced ? traced : i == 0 ? "event, λ = 0" : "";
     drawing.marks.push_back({labelled ? "#111" : drawing.strokes[drawing.strokes.size() - marks + i].color,
                              label,
                              {at[1], at[2]},

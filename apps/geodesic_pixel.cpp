@@ -5,7 +5,6 @@
 #include "apps/geodesic_inquiry.h"
 #include "apps/geodesic_outline.h"
 #include "apps/scene_file.h"
-#include "core/base/boost.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/trace/trace_scene.h"
@@ -30,14 +29,6 @@ std::vector<int> pixel_of(const std::string& text, const Camera& camera) {
   return out;
 }
 
-/// The photon that arrives at the centre of the pixel, followed into the past, in the observer's frame;
-/// frequency 1 for the camera.
-Event past_tangent(const Scene& scene, const std::vector<int>& pixel) {
-  const auto look = host::look_direction(scene.camera, pixel[0] + 0.5, pixel[1] + 0.5);
-  const auto u = host::four_velocity(host::Vec3<double>{scene.observer.velocity});
-  return (-host::seen_photon(u, look)).c;
-}
-
 void trace(const Tracer& tracer, TracedPixel& traced) {
   const auto width = static_cast<std::size_t>(traced.scene.camera.width),
              x = static_cast<std::size_t>(traced.pixel[0]);
@@ -53,9 +44,8 @@ void trace(const Tracer& tracer, TracedPixel& traced) {
 
 double length(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 
-/// Three times as far as anything in the scene.
-double well_outside(const Scene& scene) {
-  const Event& o = scene.observer.event;
+/// Three times as far as anything in the scene, and as the start of a ray.
+double well_outside(const Scene& scene, const Event& o) {
   double farthest = length(o[1], o[2], o[3]);
   for (const Object& object : scene.objects) {
     if (object.shape.type == ShapeType::sky) continue;
@@ -75,11 +65,11 @@ double last_lambda(const Ray& ray, const TracedPixel& traced) {
       status == Status::sky ||
       (!traced.hits.empty() && traced.scene.objects[traced.hits.front().id - 1].shape.type == ShapeType::sky);
   if (on_sky || (status == Status::lookback_reached && !std::isfinite(traced.scene.max_lookback)))
-    return well_outside(traced.scene) / std::fabs(ray.k[0]);
+    return well_outside(traced.scene, ray.event) / std::fabs(ray.k[0]);
   if (!traced.hits.empty()) return traced.hits.back().Z;
   if (std::isfinite(traced.scene.max_lookback) && !ray.accuracy) return traced.scene.max_lookback;
   const double end = ray.at(std::min(traced.scene.max_lookback, 1e300)).lambda;
-  return std::isfinite(end) && end > 0 ? end : well_outside(traced.scene);
+  return std::isfinite(end) && end > 0 ? end : well_outside(traced.scene, ray.event);
 }
 
 }  // namespace
@@ -106,9 +96,13 @@ Inquiry inquire_pixel(const GeodesicOptions& options) {
   const auto tracer = file.read([&] { return prepare_scene(*out.spacetime, scene, options.scene); });
   trace(*tracer, traced);
 
-  Ray ray{out.spacetime,       out.parameters, scene.observer.event, past_tangent(scene, traced.pixel), {},
-          scene.observer.frame};
+  // The photon that arrives at the centre of the pixel, followed into the past.
+  const CameraRayReport start = out.spacetime->camera_ray(out.parameters, scene.camera, scene.observer,
+                                                          traced.pixel[0] + 0.5, traced.pixel[1] + 0.5);
+  Ray ray{out.spacetime, out.parameters, start.event, start.past, {}, start.frame};
   if (scene.integrated) ray.accuracy = scene.accuracy;
+  if (static_cast<Status>(traced.record.status) == Status::outside)
+    throw InputError("--pixel", "lies where there is no observer of the camera's frame; expected another");
   out.plot_to = last_lambda(ray, traced);
   out.lambda = evenly_spaced(0, out.plot_to, options.points == 0 ? 400 : options.points);
   out.members.push_back({0, ray});

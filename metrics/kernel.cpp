@@ -66,6 +66,12 @@ class Kernel final : public Spacetime {
     const auto tetrad = NULLCONE_ISA::observer_tetrad(make_metric<M>(values), Vec4<double>{event}, frame);
     return {tetrad.e[0].c, tetrad.e[1].c, tetrad.e[2].c, tetrad.e[3].c};
   }
+  CameraRayReport camera_ray(std::span<const double> values, const Camera& camera, const Observer& observer,
+                             double x, double y) const override {
+    const CameraRays<M> rays{camera, {make_metric<M>(values), observer}};
+    const RayStart<double> ray = rays.start(x, y);
+    return {ray.event.c, ray.past.c, has_film(camera) ? rays.from.frame_beside() : observer.frame};
+  }
   Event connection(std::span<const double> values, const Event& event, const Event& u,
                    const Event& v) const override {
     return NULLCONE_ISA::connection(make_metric<M>(values), Vec4<double>{event}, Vec4<double>{u},

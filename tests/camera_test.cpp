@@ -262,5 +262,41 @@ TEST_F(Cameras, PacksHaveTheBitsOfOneLane) {
     }
 }
 
+/// A film: places to the right and upwards, one direction everywhere; the same bits in packs.
+TEST_F(Cameras, AFilmHasPlacesAndOneDirection) {
+  using Lane = Lanes<Pack>;
+  Camera camera = camera_of(CameraType::orthographic, 80, 50);
+  camera.extent_horizontal = 1.6, camera.extent_vertical = 1;
+  const Vec3<double> forward{camera.forward}, left{camera.left}, up{camera.up};
+  EXPECT_LT(distance(place_on_film(camera, 40.0, 25.0), Vec3<double>{}), 1e-16);
+  EXPECT_LT(distance(place_on_film(camera, 0.0, 25.0), 0.8 * left), 1e-15);
+  EXPECT_LT(distance(place_on_film(camera, 80.0, 0.0), -0.8 * left + 0.5 * up), 1e-15);
+  EXPECT_LT(distance(place_on_film(camera, 40.0, 25.0, 1.0, 2.0), -0.02 * left - 0.04 * up), 1e-15);
+  const Camera samples = sample_camera([&] {
+    Camera out = camera;
+    out.samples = 4;
+    return out;
+  }());
+  EXPECT_EQ(picture_position(camera, forward)[0], -1);
+  for (int n = 0; n < 5000; ++n) {
+    std::array<double, Lane::count> x{}, y{};
+    for (double& value : x) value = from_to(0, camera.width);
+    for (double& value : y) value = from_to(0, camera.height);
+    const Pack X = Lane::load(x.data()), Y = Lane::load(y.data());
+    const Vec3<Pack> wide = place_on_film(camera, X, Y, Pack(0.0625), Pack(-0.0625));
+    for (std::size_t lane = 0; lane < Lane::count; ++lane) {
+      const Vec3<double> one = place_on_film(camera, x[lane], y[lane], 0.0625, -0.0625);
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(Lane::get(wide[c], lane)),
+                  std::bit_cast<std::uint64_t>(one[c]));
+      ASSERT_EQ(distance(look_direction(camera, x[lane], y[lane]), forward), 0);
+      ASSERT_TRUE(has_ray(camera, x[lane], y[lane]));
+      ASSERT_LT(
+          distance(place_on_film(samples, 4 * x[lane], 4 * y[lane]), place_on_film(camera, x[lane], y[lane])),
+          1e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace nullcone::host

@@ -120,7 +120,8 @@ files = [tools.trace(goedel_scene(source, [66, 18]), "goedel.exr"), tools.trace(
          tools.trace(black_hole_scene([24, 20]), "hole.exr"), tools.trace(lit_scene([7, 11], 2), "lit.exr")]
 kDome = {"type": "fisheye", "fov_deg": 100, "resolution": [9, 11], "samples": 2}
 files += [tools.trace({**flat_scene([9, 9], 2), "camera": kDome, "max_lookback": {"t": 2.9}}, "dome.exr"), tools.trace({**lit_scene([9, 9], 2), "camera": kDome}, "lit_dome.exr")]
-formats = {"lit.exr": 3, "dome.exr": 4, "lit_dome.exr": 4}
+files += [tools.trace({**flat_scene([9, 9], 2), "camera": {"type": "orthographic", "extent": 4, "resolution": [9, 11]}}, "film.exr")]
+formats = {"lit.exr": 3, "dome.exr": 4, "lit_dome.exr": 4, "film.exr": 4}
 for path in files:
     tools.run("info", "--verify", path)
 everything, settings = [], []

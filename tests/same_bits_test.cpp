@@ -81,11 +81,22 @@ std::vector<std::string> scenes() {
   tetrahedron["camera"] = {{"type", "tetrahedron_map"}, {"resolution", {142, 71}}};
   fisheye["camera"].update(
       {{"type", "fisheye"}, {"fov_deg", 150}, {"resolution", {kSanitized ? 21 : 61, 19}}});
-  for (json& scene : std::array{cube, tetrahedron, fisheye}) {
+  // Films, which pierce objects; some of their rays start where there is no observer.
+  json film = json::parse(moving), cut = json::parse(resting), thrown = earth, pierced = spheres;
+  film["camera"] = {{"type", "orthographic"}, {"extent", 7}, {"resolution", {83, 51}}};
+  cut["camera"] = {{"type", "orthographic"}, {"extent", 70}, {"resolution", {181, 90}}, {"azimuth_deg", 20}};
+  thrown["camera"] = {
+      {"type", "orthographic"}, {"extent", 1.5}, {"resolution", {151, 73}}, {"azimuth_deg", 24}};
+  pierced["camera"] = {{"type", "orthographic"}, {"extent", 6}, {"resolution", {45, 22}}};
+  json through = json::parse(hole);
+  through["camera"] = {
+      {"type", "orthographic"}, {"extent", 30}, {"resolution", {41, 23}}, {"azimuth_deg", 100}};
+  for (json& scene : std::array{cube, tetrahedron, fisheye, film, cut, thrown, pierced, through}) {
     scene["records"] = {{"differentials", true}};
     out.push_back(scene.dump());
   }
-  for (const json& scene : {earth, json::parse(moving), json::parse(resting), json::parse(hole), spheres})
+  for (const json& scene : {earth, json::parse(moving), json::parse(resting), json::parse(hole), spheres,
+                            film, cut, thrown, pierced, through})
     out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
   return out;
 }

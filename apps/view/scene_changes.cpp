@@ -77,6 +77,7 @@ void change_camera(JsonObject changes, json& scene) {
       changes.number("fov_deg");
     scene["fov_deg"] = changes.at("fov_deg");
   }
+  if (changes.has("extent")) copy_number(changes, "extent", scene);
   if (changes.has("resolution")) {
     const auto size = changes.numbers("resolution", 2, kLeastSide, kMostSide);
     if (size[0] * size[1] > kMostPixels)

@@ -66,7 +66,10 @@ void read_resolution(JsonObject& in, Camera& camera) {
 }
 
 void read_projection(JsonObject& in, Camera& camera, bool whole_sphere) {
-  if (whole_sphere) {
+  if (has_film(camera)) {  // square pixels
+    camera.extent_horizontal = in.number("extent", 1e-9, 1e15);
+    camera.extent_vertical = camera.extent_horizontal * camera.height / camera.width;
+  } else if (whole_sphere) {
     camera.fov_horizontal = 2 * std::numbers::pi;
     camera.fov_vertical = std::numbers::pi;
   } else if (camera.type == CameraType::panorama) {

@@ -1,9 +1,9 @@
 // The rays of a band of pixels, side by side in packs.
 #pragma once
 
-#include "core/base/boost.h"
 #include "core/base/camera.h"
 #include "core/trace/records.h"
+#include "core/trace/viewpoint.h"
 
 NULLCONE_KERNEL_BEGIN
 
@@ -18,6 +18,7 @@ struct BandRays {
   std::size_t count = 0, padded = 0;
   std::unique_ptr<double[]> memory;
   std::array<double*, 4> k{};                  ///< past-directed tangent in the static tetrad
+  std::array<double*, 4> start{};              ///< events, where rays start at a film; else null
   double *limit = nullptr, *steps = nullptr;   ///< limit: in lambda; below 0 where the camera has no ray
   double *lambda = nullptr, *taken = nullptr;  ///< of the search under way: how far, and how many steps
   std::unique_ptr<std::uint32_t[]> nearest;    ///< object number from 1, 0 for none
@@ -25,11 +26,12 @@ struct BandRays {
   std::unique_ptr<bool[]> doubtful;
 
   bool exists(std::size_t ray) const { return limit[ray] >= 0; }
+  bool from_film() const { return start[0] != nullptr; }
 
-  explicit BandRays(std::size_t rays)
+  BandRays(std::size_t rays, bool film)
       : count(rays),
         padded((rays + 7) / 8 * 8),
-        memory(new double[8 * padded]),
+        memory(new double[(film ? 12 : 8) * padded]),
         nearest(new std::uint32_t[padded]()),
         list(new std::uint32_t[padded]),
         doubtful(new bool[padded]()) {
@@ -38,6 +40,7 @@ struct BandRays {
     steps = memory.get() + 5 * padded;
     lambda = memory.get() + 6 * padded;
     taken = memory.get() + 7 * padded;
+    for (std::size_t i = 0; film && i < 4; ++i) start[i] = memory.get() + (8 + i) * padded;
   }
 };
 
@@ -64,6 +67,9 @@ struct Group {
   Vec4<S> load_k(const BandRays& rays) const {
     return Vec4<S>::map([&](std::size_t c) { return load(rays.k[c]); });
   }
+  Vec4<S> load_start(const BandRays& rays) const {
+    return Vec4<S>::map([&](std::size_t c) { return load(rays.start[c]); });
+  }
   /// f(i) of each ray i.
   template <class F>
   S gather(F&& f) const {
@@ -74,32 +80,35 @@ struct Group {
 };
 
 /// The rays of a band as the camera sends them into the past.
+template <Metric M>
 struct CameraRays {
   Camera camera;
-  Vec4<double> u;  ///< the camera's 4-velocity, in the static tetrad
+  Viewpoint<M> from;
   int first_line = 0;
 
-  /// The tangent, in the static tetrad, of the ray through picture coordinates (x + dx, y + dy), on the part
-  /// of the picture to which (x, y) belongs.
+  /// The ray through picture coordinates (x + dx, y + dy), on the part of the picture to which (x, y)
+  /// belongs.
   template <class S>
-  Vec4<S> past(const S& x, const S& y, double dx = 0, double dy = 0) const {
-    return -seen_photon(convert<S>(u), look_direction(camera, x, y, S(dx), S(dy)));
+  RayStart<S> start(const S& x, const S& y, double dx = 0, double dy = 0) const {
+    const Vec4<S> past = -seen_photon(convert<S>(from.u), look_direction(camera, x, y, S(dx), S(dy)));
+    if (!has_film(camera)) return {convert<S>(from.event), past};
+    return from.aside(place_on_film(camera, x, y, S(dx), S(dy)), past);
   }
-  /// The tangents of rays at a part `h` of a pixel beside those of some rays of the band: to the right, to
-  /// the left, down, up. They lie beside one another in the sky too: past the edge of a face the map goes on.
+  /// Rays at a part `h` of a pixel beside those of some rays of the band: to the right, to the left, down,
+  /// up. They lie beside one another in the sky too: past the edge of a face the map goes on.
   template <class S, class F>
-  std::array<Vec4<S>, 4> beside(const Group<S>& group, double h, F&& ray_of) const {
+  std::array<RayStart<S>, 4> beside(const Group<S>& group, double h, F&& ray_of) const {
     const auto width = static_cast<std::size_t>(camera.width);
     const S x = group.gather([&](std::size_t i) { return static_cast<double>(ray_of(i) % width) + 0.5; });
     const S y = group.gather(
         [&](std::size_t i) { return static_cast<double>(ray_of(i) / width) + (first_line + 0.5); });
-    return {past(x, y, h), past(x, y, -h), past(x, y, 0, h), past(x, y, 0, -h)};
+    return {start(x, y, h), start(x, y, -h), start(x, y, 0, h), start(x, y, 0, -h)};
   }
 };
 
 /// Camera rays of a band: the photon that arrives at each pixel, followed into the past.
-template <class S>
-void aim(const CameraRays& from, double lookback, BandRays& rays) {
+template <class S, Metric M>
+void aim(const CameraRays<M>& from, double lookback, BandRays& rays) {
   const Camera& camera = from.camera;
   int column = 0, line = from.first_line;  // of the next ray; the last ray is repeated to fill the last pack
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
@@ -110,8 +119,10 @@ void aim(const CameraRays& from, double lookback, BandRays& rays) {
       if (i + lane + 1 < rays.count && ++column == camera.width) column = 0, ++line;
     }
     const S at_x = Lanes<S>::load(x.data()), at_y = Lanes<S>::load(y.data());
-    const Vec4<S> past = from.past(at_x, at_y);
-    for (std::size_t c = 0; c < 4; ++c) Lanes<S>::store(past[c], rays.k[c] + i);
+    const RayStart<S> ray = from.start(at_x, at_y);
+    for (std::size_t c = 0; c < 4; ++c) Lanes<S>::store(ray.past[c], rays.k[c] + i);
+    if (rays.from_film())
+      for (std::size_t c = 0; c < 4; ++c) Lanes<S>::store(ray.event[c], rays.start[c] + i);
     Lanes<S>::store(select(has_ray(camera, at_x, at_y), S(lookback), S(-kFar)), rays.limit + i);
     Lanes<S>::store(S(0.0), rays.steps + i);
   }

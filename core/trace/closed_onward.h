@@ -58,14 +58,19 @@ void keep_crossings(const Group<S>& group, const Search<S>& search, const S& nex
 /// rounds as `search` does.
 template <class S, class Placing, class Body, class Shape>
 void search_onward(const Placed<Placing, Body, Shape>& object, std::uint32_t number,
-                   const Vec4<double>& event, double resolution, BandRays& rays, Onwards& onwards) {
+                   const Vec4<double>& event, BandRays& rays, Onwards& onwards) {
   constexpr int kRound = 4;
-  const auto launch = object.placing.launch(event);
-  std::size_t listed = list_candidates<S>(object.placing, event, rays);
+  const Launches<S, Placing> launches(object.placing, event, rays);
+  std::size_t listed = launches.list_candidates(rays);
   for (std::size_t i = 0; i < listed; ++i) {
     const std::size_t ray = rays.list[i];
     rays.lambda[ray] = rays.taken[ray] = onwards.times[ray] = 0;
     onwards.side[ray] = object.shape.starts_inside() ? -1 : 1;
+  }
+  for (std::size_t i = 0; rays.from_film() && i < listed; i += Lanes<S>::count) {
+    const Group<S> group(rays.list.get(), i, listed);
+    const Mask<S> inside = starts_inside(launches.ray(group), object.shape, S(0.0));
+    group.store(select(inside, S(-1.0), S(1.0)), onwards.side.get());
   }
   while (listed > 0) {
     std::size_t left = 0;
@@ -75,10 +80,11 @@ void search_onward(const Placed<Placing, Body, Shape>& object, std::uint32_t num
       Search<S> search(limit);
       search.lambda = group.load(rays.lambda);
       search.steps = group.load(rays.taken);
-      const auto ray = object.placing.ray(launch, group.load_k(rays));
+      const auto ray = launches.ray(group);
+      const S resolution = launches.resolution(group);
       const Onward<S, Shape> shape{object.shape, group.load(onwards.side.get()) < S(0.0)};
-      advance(ray, shape, limit, S(resolution), kRound, search);
-      const S next = past_crossing(ray, object.shape, search, S(resolution));
+      advance(ray, shape, limit, resolution, kRound, search);
+      const S next = past_crossing(ray, object.shape, search, resolution);
       keep_crossings(group, search, next, number, rays, onwards, left);
     }
     listed = left;

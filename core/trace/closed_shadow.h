@@ -22,9 +22,7 @@ S let_past(const Placed<Placing, Body, Shape>& object, double opacity, const Lit
   search.active = search.active & (start < limit) & (ray.clearance(S(0.0)) < limit);
   if (!any(search.active)) return through;
   search.lambda = start;
-  const Sight<S> first = ray.at(start);
-  Mask<S> inside = first.clearance <= S(0.0);
-  inside = object.shape.is_sheet() ? inside & !inside : inside & object.shape.holds(first.X);
+  Mask<S> inside = starts_inside(ray, object.shape, start);
   for (int sheet = 0; sheet < kMostSheets && any(search.active); ++sheet) {
     advance(ray, Onward<S, Shape>{object.shape, inside}, limit, lit.rounding, kSearchLimit, search);
     through = select(search.met, S(1 - opacity) * through, through);

@@ -47,7 +47,7 @@ class ClosedTracer final : public Tracer {
       : metric_(metric),
         rules_(scene),
         wanted_(scene.records.channels),
-        camera_{scene.camera, four_velocity(Vec3<double>{scene.observer.velocity})},
+        camera_{scene.camera, {metric, scene.observer}},
         observation_{scene.observer.event},
         lookback_(scene.max_lookback),
         lookback_t_(scene.max_lookback_t),
@@ -55,9 +55,7 @@ class ClosedTracer final : public Tracer {
         clocks_(new Clock[rules_.objects]),
         opacities_(new double[rules_.objects]),
         light_rules_(scene.lights),
-        lamps_(new PlacedLamp<LampLine<M>>[light_rules_.lamps]) {
-    resolution_ = 4e-15 * norm(spatial(observation_));
-  }
+        lamps_(new PlacedLamp<LampLine<M>>[light_rules_.lamps]) {}
 
   /// Makes the objects ready; false, with the reason, for the first that cannot be traced.
   bool place_objects(const Scene& scene, Unfit& unfit) {
@@ -86,13 +84,14 @@ class ClosedTracer final : public Tracer {
   }
 
   void trace_band(int first_line, int lines, const BandRoom& room) const override {
-    CameraRays camera = camera_;
+    CameraRays<M> camera = camera_;
     camera.first_line = first_line;
-    BandRays rays(static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera.camera.width));
+    BandRays rays(static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera.camera.width),
+                  has_film(camera.camera));
     aim<Wide>(camera, lookback_, rays);
     if (lookback_t_ < kFar) end_in_the_past<Wide>(metric_, observation_, lookback_t_, rays);
     for_each_object(true, [&](const auto& placed, std::uint32_t number) {
-      search<Wide>(placed, number, observation_, resolution_, rays);
+      search<Wide>(placed, number, observation_, rays);
     });
     write(camera, rays, find_crossings(rays), room);
   }
@@ -124,7 +123,7 @@ class ClosedTracer final : public Tracer {
         return false;
       }
     const auto launch = placed.placing.launch(observation_);
-    const Vec4<double> observer = placed.placing.path(launch, camera_.u).at(0.0).event;
+    const Vec4<double> observer = placed.placing.path(launch, camera_.from.u).at(0.0).event;
     unfit.reason = fault_of(metric_, placed.body, placed.shape, shape, observer);
     return unfit.reason == nullptr;
   }
@@ -157,13 +156,13 @@ class ClosedTracer final : public Tracer {
     }
     Onwards onwards(rays);
     for_each_object(false, [&](const auto& placed, std::uint32_t number) {
-      search_onward<Wide>(placed, number, observation_, resolution_, rays, onwards);
+      search_onward<Wide>(placed, number, observation_, rays, onwards);
     });
     add_ends(onwards.found);
     return by_ray(onwards.found, rays.count);
   }
 
-  void write(const CameraRays& camera, const BandRays& rays, const Pool<Crossing>& crossings,
+  void write(const CameraRays<M>& camera, const BandRays& rays, const Pool<Crossing>& crossings,
              const BandRoom& room) const {
     const std::unique_ptr<Status[]> status(new Status[rays.count]);
     for (std::size_t i = 0; i < rays.count; ++i)
@@ -193,14 +192,21 @@ class ClosedTracer final : public Tracer {
 
   /// Writes the records of a group of crossings with one object, and what else is asked for.
   template <class P>
-  void record(const P& placed, const CameraRays& camera, const BandRays& rays,
+  void record(const P& placed, const CameraRays<M>& camera, const BandRays& rays,
               const Pool<Crossing>& crossings, const Group<Wide>& group, const HitRoom& to) const {
     const auto ray_of = [&](std::size_t i) -> std::size_t { return crossings[i].ray; };
     const auto past = Vec4<Wide>::map(
         [&](std::size_t c) { return group.gather([&](std::size_t i) { return rays.k[c][ray_of(i)]; }); });
     const auto& placing = placed.placing;
     const auto launch = placing.launch(observation_);
-    const auto path = placing.path(launch, past);
+    const auto path_of = [&](const RayStart<Wide>& ray) {
+      return rays.from_film() ? placing.path(placing.launch(ray.event), ray.past)
+                              : placing.path(launch, ray.past);
+    };
+    RayStart<Wide> start{{}, past};
+    for (std::size_t c = 0; rays.from_film() && c < 4; ++c)
+      start.event[c] = group.gather([&](std::size_t i) { return rays.start[c][ray_of(i)]; });
+    const auto path = path_of(start);
     Crossed<Wide> crossed =
         record_crossing(metric_, path, placed.body, placed.shape,
                         group.gather([&](std::size_t i) { return crossings[i].lambda; }),
@@ -218,9 +224,7 @@ class ClosedTracer final : public Tracer {
     }
     if (wanted_.duv) {
       const auto beside = camera.beside(group, kBeside, ray_of);
-      const auto event = [&](std::size_t i) {
-        return placing.path(launch, beside[i]).at(crossed.here.lambda).event;
-      };
+      const auto event = [&](std::size_t i) { return path_of(beside[i]).at(crossed.here.lambda).event; };
       const Wide scale(0.5 / kBeside);
       detailed.duv = change_of_uv(crossed, placed.body, placed.shape,
                                   {scale * (event(0) - event(1)), scale * (event(2) - event(3))});
@@ -249,12 +253,12 @@ class ClosedTracer final : public Tracer {
     illuminate(metric_, lamps_.get(), light_rules_, lit, group, observation_[0], let_through, to);
   }
 
-  HitDetail detail_of_sky(const CameraRays& camera, std::size_t ray, const Vec3<double>& direction) const {
+  HitDetail detail_of_sky(const CameraRays<M>& camera, std::size_t ray, const Vec3<double>& direction) const {
     const auto list = static_cast<std::uint32_t>(ray);
     const auto beside = camera.beside(Group<double>(&list, 0, 1), kBeside, [](std::size_t i) { return i; });
     const double scale = 0.5 / kBeside;
-    return sky_detail(direction,
-                      {scale * spatial(beside[0] - beside[1]), scale * spatial(beside[2] - beside[3])});
+    return sky_detail(direction, {scale * spatial(beside[0].past - beside[1].past),
+                                  scale * spatial(beside[2].past - beside[3].past)});
   }
 
   /// Part of a pixel by which neighbouring rays stand aside: differences are good to its square.
@@ -263,7 +267,7 @@ class ClosedTracer final : public Tracer {
   M metric_;
   RecordRules rules_;
   Wanted wanted_;
-  CameraRays camera_;
+  CameraRays<M> camera_;
   Vec4<double> observation_;
   double lookback_, lookback_t_;
   std::unique_ptr<AnyPlaced<M>[]> objects_;
@@ -271,7 +275,6 @@ class ClosedTracer final : public Tracer {
   std::unique_ptr<double[]> opacities_;
   LightRules light_rules_;
   std::unique_ptr<PlacedLamp<LampLine<M>>[]> lamps_;
-  double resolution_ = 0;
 };
 
 NULLCONE_KERNEL_END

@@ -42,6 +42,7 @@ json setting(const Scene& scene) {
                 {"up", c.up}}},
               {"paths", paths},
               {"records", records}};
+  if (has_film(c)) out["camera"]["extent"] = {c.extent_horizontal, c.extent_vertical};
   if (const Lights& l = scene.lights; !l.lamps.empty())
     out["lights"] = {{"windings", l.windings}, {"paths", l.paths}, {"shadows", l.shadows}, {"cap", l.cap}};
   return out;

@@ -19,7 +19,9 @@ struct Flights {
   std::array<double*, 3> axis{};  ///< about which turns are counted (turns.h)
   double* turns;                  ///< so far, where the ray stands
   std::unique_ptr<std::uint32_t[]> object, list, waiting;
-  std::unique_ptr<Status[]> status;  ///< `outside` from the start: not followed
+  std::unique_ptr<Status[]> status;  ///< other than `hit` from the start: not followed
+  std::unique_ptr<double[]>
+      inside;  ///< object by object, 1 for rays that start inside of it; null: none does
   std::size_t listed = 0, waits = 0;
 
   explicit Flights(std::size_t rays)

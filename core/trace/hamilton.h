@@ -65,8 +65,8 @@ Vec3<S> sky_direction(const M& metric, const Phase<S>& at, const Phase<S>& rate,
 
 /// The frame that an observer's directions and velocity are given in. The normal observers u_m ~ d_m t exist
 /// wherever the surfaces of equal t are spacelike, in black holes too.
-template <Metric M>
-Tetrad<double> observer_tetrad(const M& metric, const Vec4<double>& x, ObserverFrame frame) {
+template <Metric M, class S>
+Tetrad<S> observer_tetrad(const M& metric, const Vec4<S>& x, ObserverFrame frame) {
   if (frame == ObserverFrame::at_rest) return static_tetrad(metric, x);
   return gram_schmidt_tetrad(metric, x, inverse(metric.g(x))[0]);
 }

@@ -11,10 +11,9 @@ class IntegratedTracer final : public Tracer {
   IntegratedTracer(const M& metric, const Scene& scene)
       : rules_(scene),
         wanted_(scene.records.channels),
-        camera_{scene.camera, four_velocity(Vec3<double>{scene.observer.velocity})},
+        camera_{scene.camera, {metric, scene.observer}},
         observation_{scene.observer.event},
-        tetrad_(observer_tetrad(metric, observation_, scene.observer.frame)),
-        departure_{observation_, {}},
+        departure_{camera_.from, has_film(scene.camera)},
         objects_(new MarchObject<M>[rules_.objects]),
         clocks_(new Clock[rules_.objects]),
         distortions_(new double[rules_.objects]()) {
@@ -22,8 +21,6 @@ class IntegratedTracer final : public Tracer {
         {metric}, scene.accuracy,        std::min(scene.max_lookback, kFar), objects_.get(), 0, rules_.sky, 0,
         kFar,     scene.records.max_hits};
     setting_.earliest = observation_[0] - std::min(scene.max_lookback_t, kFar);
-    const Matrix4<double> g = metric.g(observation_);
-    for (std::size_t a = 0; a < 4; ++a) departure_.lowered[a] = g * tetrad_.e[a];
   }
 
   /// Makes the objects ready; false, with the reason, for the first that cannot be traced.
@@ -32,7 +29,7 @@ class IntegratedTracer final : public Tracer {
     unfit.reason =
         "stands where no observer of this frame can be; near and in a black hole, try \"frame\": \"normal\"";
     double sum = 0;
-    for (const auto& e : tetrad_.e)
+    for (const auto& e : camera_.from.tetrad.e)
       for (const double component : e.c) sum += component;
     if (!std::isfinite(sum)) return false;
     for (std::size_t i = 0; i < rules_.objects; ++i) {
@@ -50,10 +47,10 @@ class IntegratedTracer final : public Tracer {
 
   void trace_band(int first_line, int lines, const BandRoom& room) const override {
     constexpr std::size_t kChunk = 2048;  // rays whose columns stay in the second-level cache
-    CameraRays camera = camera_;
+    CameraRays<M> camera = camera_;
     camera.first_line = first_line;
     const auto pixels = static_cast<std::size_t>(lines) * static_cast<std::size_t>(camera.camera.width);
-    BandRays rays(pixels);
+    BandRays rays(pixels, departure_.from_film);
     aim<Wide>(camera, setting_.lookback, rays);
     with_stepper<Wide>(setting_.accuracy.integrator, [&](auto& stepper) {
       for (std::size_t first = 0; first < pixels; first += kChunk) {
@@ -153,7 +150,9 @@ class IntegratedTracer final : public Tracer {
       const Group<Wide> from(flights.list.get(), i, flights.count);
       Group<Wide> group = from;
       for (std::size_t& ray : group.ray) ray -= first;
-      const State<Wide> y = departure_.state(from.load_k(rays));
+      RayStart<Wide> start{{}, from.load_k(rays)};
+      if (departure_.from_film) start.event = from.load_start(rays);
+      const State<Wide> y = departure_.state(start);
       group.store(Wide(kGrowth), flights.growth);
       store(group, y, flights.y);
       const Vec3<Wide> axis =
@@ -163,12 +162,30 @@ class IntegratedTracer final : public Tracer {
                                               setting_.accuracy.rtol),
                   flights.h);
     }
+    if (departure_.from_film) look_about(flights);
+  }
+
+  /// Of rays that start at a film: which do so where there is no observer, which are too early already, and
+  /// which start inside of objects.
+  void look_about(Flights& flights) const {
+    flights.inside.reset(new double[setting_.count * flights.count]());
+    for (std::size_t i = 0; i < flights.count; ++i) {
+      const auto y = State<double>::map([&](std::size_t c) { return flights.y[c][i]; });
+      double sum = 0;
+      for (const double component : y.c) sum += component;
+      if (!std::isfinite(sum)) flights.status[i] = Status::outside;
+      if (flights.status[i] == Status::outside) continue;
+      if (y[0] < setting_.earliest) flights.status[i] = Status::lookback_reached;
+      const Vec4<double> tangent = to_phase(setting_.system.rate(y)).x;
+      for (std::size_t k = 0; k < setting_.count; ++k)
+        flights.inside[k * flights.count + i] = objects_[k].holds(to_phase(y).x, tangent) ? 1 : 0;
+    }
   }
 
   /// Follows the rays to their ends; all crossings ray by ray, the sky among them.
   template <class Stepper>
   Pool<StepCrossing> find_crossings(Stepper& stepper, Flights& flights) const {
-    Trails trails(setting_, rules_.onward ? flights.count : 0);
+    Trails trails(setting_, flights, rules_.onward ? flights.count : 0);
     march<Wide>(stepper, setting_, flights, rules_.onward ? &trails : nullptr);
     for (std::uint32_t i = 0; i < flights.count; ++i) {
       const bool sky = flights.status[i] == Status::sky;
@@ -180,7 +197,7 @@ class IntegratedTracer final : public Tracer {
 
   template <class Stepper>
   void write(Stepper& stepper, Flights& flights, const Pool<StepCrossing>& crossings, std::size_t first,
-             const CameraRays& camera, const BandRoom& room) const {
+             const CameraRays<M>& camera, const BandRoom& room) const {
     const Recorder<Stepper, M> recorder{&stepper, &setting_, &departure_, &camera, wanted_,
                                         first,    &flights,  &crossings,  &light_};
     const auto record_objects = [&](std::uint32_t number, const std::uint32_t* list, std::size_t listed,
@@ -217,10 +234,9 @@ class IntegratedTracer final : public Tracer {
 
   RecordRules rules_;
   Wanted wanted_;
-  CameraRays camera_;
+  CameraRays<M> camera_;
   Vec4<double> observation_;
-  Tetrad<double> tetrad_;
-  Departure departure_;
+  Departure<M> departure_;
   std::unique_ptr<MarchObject<M>[]> objects_;
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> distortions_;

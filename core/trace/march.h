@@ -170,7 +170,7 @@ Look<S> look_at(Stepper& stepper, const MarchSetting<M>& setting, const Group<S>
   const S length = group.load(flights.length);
   const State<S> y1 = load(group, flights.y1);
   const StepStates<S, n> step(stepper, setting.system, load(group, flights.y), y1, length);
-  Look<S> out = look_closely(setting, step, y1, length);
+  Look<S> out = look_closely(setting, step, group, flights, y1, length);
   if (trails) look_onward(setting, step, group, flights, length, *trails, out);
   return out;
 }
@@ -181,7 +181,7 @@ void march(Stepper& stepper, const MarchSetting<M>& setting, Flights& flights, T
   constexpr int kRound = 12;
   flights.listed = 0;
   for (std::size_t i = 0; i < flights.count; ++i)
-    if (flights.status[i] != Status::outside) flights.list[flights.listed++] = static_cast<std::uint32_t>(i);
+    if (flights.status[i] == Status::hit) flights.list[flights.listed++] = static_cast<std::uint32_t>(i);
   while (flights.listed > 0) {
     std::size_t left = 0;
     flights.waits = 0;

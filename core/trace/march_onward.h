@@ -37,7 +37,7 @@ struct Trails {
   Pool<StepCrossing> found;
 
   template <Metric M>
-  Trails(const MarchSetting<M>& setting, std::size_t count)
+  Trails(const MarchSetting<M>& setting, const Flights& flights, std::size_t count)
       : rays(count),
         side(new double[setting.count * count]),
         after(new double[setting.count * count]()),
@@ -45,7 +45,11 @@ struct Trails {
         found(count) {
     for (std::size_t i = 0; i < setting.count; ++i)
       for (std::size_t ray = 0; ray < count; ++ray)
-        side[i * count + ray] = setting.objects[i].starts_inside() ? -1 : 1;
+        side[i * count + ray] = starts_inside(setting.objects[i], flights, i, ray) ? -1 : 1;
+  }
+  template <class Object>
+  static bool starts_inside(const Object& object, const Flights& flights, std::size_t i, std::size_t ray) {
+    return flights.inside ? flights.inside[i * flights.count + ray] > 0 : object.starts_inside();
   }
   template <class S>
   void add(const Group<S>& group, const Flights& flights, const Mask<S>& met, std::uint32_t number,

@@ -6,15 +6,23 @@
 
 NULLCONE_KERNEL_BEGIN
 
-/// What makes a ray's first state from its tangent in the observer's tetrad.
+/// What makes a ray's first state.
+template <Metric M>
 struct Departure {
-  Vec4<double> observation;
-  Matrix4<double> lowered{};  ///< rows: g e_a
+  Viewpoint<M> from;
+  bool from_film;
+  Matrix4<double> lowered{};  ///< rows: g e_a at the observer's event
+
+  Departure(const Viewpoint<M>& viewpoint, bool film) : from(viewpoint), from_film(film) {
+    const Matrix4<double> g = from.metric.g(from.event);
+    for (std::size_t a = 0; a < 4; ++a) lowered[a] = g * from.tetrad.e[a];
+  }
 
   template <class S>
-  State<S> state(const Vec4<S>& k) const {
-    Phase<S> start{convert<S>(observation), {}};
-    for (std::size_t a = 0; a < 4; ++a) start.p = start.p + k[a] * convert<S>(lowered[a]);
+  State<S> state(const RayStart<S>& ray) const {
+    if (from_film) return to_state(Phase<S>{ray.event, from.momentum(ray)});
+    Phase<S> start{convert<S>(from.event), {}};
+    for (std::size_t a = 0; a < 4; ++a) start.p = start.p + ray.past[a] * convert<S>(lowered[a]);
     return to_state(start);
   }
 };
@@ -63,19 +71,18 @@ Followed<S> follow(Stepper& stepper, const MarchSetting<M>& setting, const State
 /// Half a pixel to either side: near enough for differences, and far enough for the errors of two rays.
 inline constexpr double kBesideIntegrated = 0.5;
 
-/// Events at lambda = target on rays with tangents k, in the observer's tetrad; NaN for those that do not
-/// come so far.
+/// Events at lambda = target on rays; NaN for those that do not come so far.
 template <class Stepper, Metric M, class S>
-Vec4<S> event_at(Stepper& stepper, const MarchSetting<M>& setting, const Departure& departure,
-                 const Vec4<S>& k, const S& target) {
-  const Followed<S> found = follow(stepper, setting, departure.state(k), target, false);
+Vec4<S> event_at(Stepper& stepper, const MarchSetting<M>& setting, const Departure<M>& departure,
+                 const RayStart<S>& ray, const S& target) {
+  const Followed<S> found = follow(stepper, setting, departure.state(ray), target, false);
   const Vec4<S> none = Vec4<S>::map([](std::size_t) { return S(std::numeric_limits<double>::quiet_NaN()); });
   return select(found.lost, none, to_phase(found.y).x);
 }
 
 template <class Stepper, Metric M, class S>
-EventChange<S> event_change(Stepper& stepper, const MarchSetting<M>& setting, const Departure& departure,
-                            const std::array<Vec4<S>, 4>& beside, const S& target) {
+EventChange<S> event_change(Stepper& stepper, const MarchSetting<M>& setting, const Departure<M>& departure,
+                            const std::array<RayStart<S>, 4>& beside, const S& target) {
   const auto event = [&](std::size_t i) { return event_at(stepper, setting, departure, beside[i], target); };
   const S scale(0.5 / kBesideIntegrated);
   return {scale * (event(0) - event(1)), scale * (event(2) - event(3))};
@@ -84,8 +91,9 @@ EventChange<S> event_change(Stepper& stepper, const MarchSetting<M>& setting, co
 /// The same for the direction to a sky, of length 1 (its time component is 0); NaN where a neighbour does not
 /// see the same sky.
 template <class Stepper, Metric M, class S>
-EventChange<S> direction_change(Stepper& stepper, const MarchSetting<M>& setting, const Departure& departure,
-                                const std::array<Vec4<S>, 4>& beside, double sky) {
+EventChange<S> direction_change(Stepper& stepper, const MarchSetting<M>& setting,
+                                const Departure<M>& departure, const std::array<RayStart<S>, 4>& beside,
+                                double sky) {
   const auto direction = [&](std::size_t i) {
     const Followed<S> found = follow(stepper, setting, departure.state(beside[i]), S(setting.lookback), true);
     const Vec3<S> n =

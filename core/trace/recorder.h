@@ -26,8 +26,8 @@ template <class Stepper, Metric M>
 struct Recorder {
   Stepper* stepper;
   const MarchSetting<M>* setting;
-  const Departure* departure;
-  const CameraRays* camera;
+  const Departure<M>* departure;
+  const CameraRays<M>* camera;
   Wanted wanted;
   std::size_t first;  ///< ray of the chunk within the band
   const Flights* flights;
@@ -38,7 +38,7 @@ struct Recorder {
     return State<Wide>::map(
         [&](std::size_t c) { return group.gather([&](std::size_t i) { return (*crossings)[i].y[c]; }); });
   }
-  std::array<Vec4<Wide>, 4> beside(const Group<Wide>& group) const {
+  std::array<RayStart<Wide>, 4> beside(const Group<Wide>& group) const {
     return camera->beside(group, kBesideIntegrated,
                           [&](std::size_t i) { return first + (*crossings)[i].ray; });
   }
@@ -64,16 +64,16 @@ struct Recorder {
     crossed.record.Z = crossed.record.Z + group.gather([&](std::size_t i) { return (*crossings)[i].lambda; });
     crossed.record.order = order_of(group, spatial(crossed.emitted));
     const std::uint32_t number = (*crossings)[group.ray[0]].number;
-    scatter(crossed.record, group, number, departure->observation[0], origin, to.hits);
+    scatter(crossed.record, group, number, departure->from.event[0], origin, to.hits);
     if (to.lights)
       light->illuminate(lit_point(setting->system.metric, crossed, InChart{}), group, number,
-                        departure->observation[0], to);
+                        departure->from.event[0], to);
     if (!to.details || !wanted.any()) return;
 
     Detailed<Wide> detailed;
     if (wanted.directions) {
       find_directions(crossed, object.body, object.shape, detailed);
-      detailed.P = spatial(crossed.emitted - convert<Wide>(departure->observation));
+      detailed.P = spatial(crossed.emitted - convert<Wide>(departure->from.event));
     }
     if (wanted.duv)
       detailed.duv =

@@ -104,6 +104,13 @@ struct ConnectionsReport {
   bool complete = true;                       ///< false: some may have been missed
 };
 
+/// Where a camera's ray starts, and its past-directed tangent there in the tetrad of `frame`; the frequency
+/// is 1 for the camera.
+struct CameraRayReport {
+  Event event, past;
+  ObserverFrame frame;
+};
+
 struct GeodesicPoint {
   double lambda;
   Event event, tangent;
@@ -129,6 +136,9 @@ class Spacetime {
   /// The same of the observers of `frame`.
   virtual std::array<Event, 4> observer_tetrad(std::span<const double> parameters, const Event& event,
                                                ObserverFrame frame) const = 0;
+  /// The ray through picture coordinates (x, y).
+  virtual CameraRayReport camera_ray(std::span<const double> parameters, const Camera& camera,
+                                     const Observer& observer, double x, double y) const = 0;
   /// Gamma^mu_ab u^a v^b at an event: what parallel transport along u takes from v.
   virtual Event connection(std::span<const double> parameters, const Event& event, const Event& u,
                            const Event& v) const = 0;

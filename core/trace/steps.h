@@ -68,15 +68,28 @@ constexpr std::size_t states_of_step() {
   return Stepper::kOrder > 6 ? 4 : 3;
 }
 
+/// Where a step first meets object number i, before `limit`, on rays some of which may have started inside.
+template <Metric M, class S, std::size_t n>
+Search<S> first_crossing(const MarchSetting<M>& setting, const StepStates<S, n>& step, const Group<S>& group,
+                         const Flights& flights, std::size_t i, const S& length, const S& limit) {
+  const MarchObject<M>& object = setting.objects[i];
+  if (!flights.inside) return object.first_crossing(step.at, step.rate, length, limit);
+  const Mask<S> inside = group.load(flights.inside.get() + i * flights.count) > S(0.0);
+  return object.with_curve(step.at, step.rate, length, [&](const auto& curve, const auto& shape) {
+    const Onward<S, std::decay_t<decltype(shape)>> onward{shape, inside};
+    return NULLCONE_ISA::first_crossing(curve, onward, limit, S(1e-13) * length);
+  });
+}
+
 /// Where does a step first meet an object at which rays end?
 template <Metric M, class S, std::size_t n>
-Look<S> look_closely(const MarchSetting<M>& setting, const StepStates<S, n>& step, const State<S>& y1,
-                     const S& length) {
+Look<S> look_closely(const MarchSetting<M>& setting, const StepStates<S, n>& step, const Group<S>& group,
+                     const Flights& flights, const State<S>& y1, const S& length) {
   Look<S> out{length, S(0.0), length != length, length != length,
               ending_of(setting, y1, to_state(step.rate[n - 1]))};
   for (std::size_t i = 0; i < setting.count; ++i) {
     if (!setting.objects[i].ends_rays) continue;
-    const Search<S> search = setting.objects[i].first_crossing(step.at, step.rate, length, out.delta);
+    const Search<S> search = first_crossing(setting, step, group, flights, i, length, out.delta);
     out.delta = select(search.met, search.lambda, out.delta);
     out.number = select(search.met, S(static_cast<double>(i)), out.number);
     out.met = out.met | search.met;

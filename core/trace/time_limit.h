@@ -13,8 +13,8 @@ inline constexpr int kTimeSteps = 400;
 /// curve whose second derivative is nowhere above `bend`, Newton's method is safe with it in the root: no
 /// step leads past a zero, and steps converge quadratically. `lost`: lanes that have not come to an end of
 /// it.
-template <class S, class Path>
-S first_time_back(const Path& path, double back, const S& bend, const S& limit, Mask<S>& lost) {
+template <class S, class Path, class T>
+S first_time_back(const Path& path, const T& back, const S& bend, const S& limit, Mask<S>& lost) {
   const S start = path.at(S(0.0)).event[0];
   S lambda(0.0);
   Mask<S> active = limit > S(0.0);
@@ -32,15 +32,24 @@ S first_time_back(const Path& path, double back, const S& bend, const S& limit, 
   return min(lambda, limit);
 }
 
-/// Cuts the rays of a band where they are `back` earlier than the observation.
+/// Cuts the rays of a band where they are `back` earlier than the observation; those that start there, at a
+/// film, have no length.
 template <class S, class M>
 void end_in_the_past(const M& metric, const Vec4<double>& observation, double back, BandRays& rays) {
   for (std::size_t i = 0; i < rays.padded; i += Lanes<S>::count) {
     const auto k = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.k[c] + i); });
     Mask<S> lost = k[0] != k[0];
     const S bend = S(metric.bend_of_time()) * (k[0] * k[0]);
-    const S end = first_time_back(metric.path(convert<S>(observation), k), back, bend,
-                                  Lanes<S>::load(rays.limit + i), lost);
+    const S limit = Lanes<S>::load(rays.limit + i);
+    S end;
+    if (rays.from_film()) {
+      const auto start = Vec4<S>::map([&](std::size_t c) { return Lanes<S>::load(rays.start[c] + i); });
+      const S left = S(back) + (start[0] - S(observation[0]));
+      end = first_time_back(metric.path(start, k), left, bend,
+                            select(left > S(0.0), limit, min(limit, S(0.0))), lost);
+    } else {
+      end = first_time_back(metric.path(convert<S>(observation), k), back, bend, limit, lost);
+    }
     Lanes<S>::store(end, rays.limit + i);
     std::array<bool, Lanes<S>::count> doubtful{};
     Lanes<S>::store(lost, doubtful.data());

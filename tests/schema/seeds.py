@@ -143,6 +143,12 @@ SCENES = {
              "placing": {"type": "local", "worldline": {"type": "tabulated", "events": [[-50, 0, 0, 40], [0, 1, 0, 40], [50, 2, 1, 40]]}}},
         ],
     },
+    "film": {
+        "metric": {"name": "goedel"},
+        "observer": {"event": [0, 0, 0, 0]},
+        "camera": {"type": "orthographic", "resolution": [64, 48], "extent": 2.5, "azimuth_deg": 30},
+        "objects": [BALL],
+    },
     "journey": {
         "frames": {"count": 2, "from": 0, "to": 1, "time": "proper"},
         "metric": {"name": "minkowski"},

@@ -131,6 +131,18 @@ test("the frame of a pixel looks where the camera does, and moves as the pixel d
   }
 });
 
+test("on a film an object moves by pixels, however far it is", () => {
+  const camera = {azimuth_deg: 0, elevation_deg: 0, roll_deg: 0, extent: 4, resolution: [200, 100]};
+  const {look, right, down, parallel} = numbers.pixelFrame("orthographic", camera, 150, 20);
+  assert.ok(parallel);
+  look.forEach((x, i) => near(x, [1, 0, 0][i], 1e-15));
+  right.forEach((x, i) => near(x, [0, -0.02, 0][i], 1e-15));
+  down.forEach((x, i) => near(x, [0, 0, -0.02][i], 1e-15));
+  const {camera: read} = numbers.sceneNumbers({...scene, camera: {type: "orthographic", resolution: [6, 1], extent: 3}});
+  assert.equal(read.extent, 3);
+  assert.equal(numbers.lookedRound("orthographic", {...camera, ...read, resolution: [100, 50]}, 10, 0).azimuth_deg.toFixed(6), (0.1 * 180 / Math.PI).toFixed(6));
+});
+
 test("maps look where the tracer does", () => {
   const level = {azimuth_deg: 0, elevation_deg: 0, roll_deg: 0}, look = (type, camera, x, y) => numbers.pixelFrame(type, {...level, ...camera}, x, y).look;
   const same = (a, b) => a.forEach((x, i) => near(x, b[i], 1e-12));

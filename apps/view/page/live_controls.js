@@ -48,7 +48,8 @@ export function liveControls(live) {
   return element;
 }
 
-function fields({fov_deg}, number) {
+function fields({fov_deg, extent: film}, number) {
+  if (film !== undefined) return [number("/camera/extent", "Extent", {min: film / 10, max: film * 10, least: 1e-9, scale: "log"})];
   const range = {min: 1, max: 179, least: 0.001, most: 360, unit: "°"};
   if (fov_deg === undefined) return [];
   if (typeof fov_deg === "number") return [number("/camera/fov_deg", "Field of view", range)];

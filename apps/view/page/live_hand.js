@@ -82,7 +82,7 @@ export class LiveHand {
   /** At right angles to the line of sight, as far as it is away: where light runs straight it stays under the pointer. */
   #place() {
     const {name, start, Z, frame, dx, dy} = this.#object;
-    const by = scaled(sum(scaled(frame.right, dx), scaled(frame.down, dy)), Z);
+    const by = scaled(sum(scaled(frame.right, dx), scaled(frame.down, dy)), frame.parallel ? 1 : Z);
     this.#live.scene.set(`/objects/${name}/event`, [start[0], ...sum(start.slice(1), by)].map(rounded), {live: true});
   }
 

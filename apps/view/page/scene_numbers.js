@@ -33,7 +33,7 @@ export function sceneNumbers(scene) {
   const metric = {...kMetric[name]};
   for (const [key, value] of Object.entries(given)) if (typeof value === "number") metric[key] = value;
   const {event, velocity = [0, 0, 0]} = scene.observer;
-  const {fov_deg, resolution} = scene.camera, {azimuth_deg, elevation_deg, roll_deg} = cameraOrientation(scene.camera);
+  const {fov_deg, extent: film, resolution} = scene.camera, {azimuth_deg, elevation_deg, roll_deg} = cameraOrientation(scene.camera);
   const objects = {};
   for (const object of scene.objects) {
     const numbers = objectNumbers(object);
@@ -41,6 +41,7 @@ export function sceneNumbers(scene) {
   }
   const camera = {azimuth_deg, elevation_deg, roll_deg, resolution: [...resolution]};
   if (fov_deg !== undefined) camera.fov_deg = fov_deg;
+  if (film !== undefined) camera.extent = film;
   return {metric, observer: {event: [...event], velocity: [...velocity]}, camera, objects};
 }
 
@@ -61,9 +62,10 @@ export function tidy(degrees) {
   return Math.abs(turned) < 1e-9 ? 0 : Number(turned.toFixed(9));
 }
 
-/** Radians a pixel of the picture, to the left and upwards, at its centre. */
+/** Radians a pixel of the picture, to the left and upwards, at its centre; of a film, as seen from as far as it is wide. */
 export function pixelAngles(type, {fov_deg, resolution: [width, height]}) {
   if (isMap(type)) return mapAngles(type, {fov_deg, resolution: [width, height]});
+  if (type === "orthographic") return [1 / width, 1 / width];
   if (type === "sphere") return [2 * Math.PI / width, Math.PI / height];
   if (type === "panorama") return [fov_deg[0] * kRadians / width, fov_deg[1] * kRadians / height];
   const both = 2 * Math.tan(fov_deg * kRadians / 2) / width;
@@ -80,13 +82,20 @@ export function lookedRound(type, camera, dx, dy) {
   return {...camera, ...fromAngles(turned)};
 }
 
-/** Unit look direction of a pixel, and the displacements at the distance 1 that move by one pixel right and down. */
+/**
+ * Unit look direction of a pixel, and the displacements at the distance 1 (of a film, where rays are `parallel`, at any) that move
+ * by one pixel right and down.
+ */
 export function pixelFrame(type, camera, x, y) {
   const {forward, left, up} = cameraAxes(angles(camera)), [across, along] = pixelAngles(type, camera);
   const inFrame = (v) => sum(scaled(forward, v[0]), sum(scaled(left, v[1]), scaled(up, v[2])));
   if (isMap(type)) {
     const {look, right, down} = mapFrame(type, camera, x, y);
     return {look: inFrame(look), right: inFrame(right), down: inFrame(down)};
+  }
+  if (type === "orthographic") {
+    const step = -camera.extent / camera.resolution[0];
+    return {look: forward, right: scaled(left, step), down: scaled(up, step), parallel: true};
   }
   const [width, height] = camera.resolution, h = (width / 2 - x - 0.5) * across, v = (height / 2 - y - 0.5) * along;
   if (type === "perspective") {
