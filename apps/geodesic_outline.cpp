@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/base/boost.h"
+#include "core/base/error.h"
+#include "core/trace/follow.h"
 
 namespace nullcone {
 
@@ -27,14 +29,26 @@ struct Projection {
 };
 
 /// Where a worldline is at a chart time: Newton's method from the proper time of the record, or from 0.
-GeodesicPoint worldline_at(const Inquiry& inquiry, const Worldline& worldline, double time, double tau) {
+GeodesicPoint worldline_at(const Inquiry& inquiry, const Object& object, double time, double tau) {
+  const Worldline& worldline = object.placing.worldline;
   Ray line{inquiry.spacetime, inquiry.parameters, worldline.event,
            host::four_velocity(Vector{worldline.velocity}).c, inquiry.members[0].ray.accuracy};
   if (inquiry.spacetime->description().closed_paths) line.accuracy.reset();
-  GeodesicPoint here = line.at(tau);
-  for (int i = 0; i < 50 && std::fabs(here.event[0] - time) > 1e-9; ++i) {
-    tau += (time - here.event[0]) / here.tangent[0];
-    here = line.at(tau);
+  const auto at = [&](double proper_time) {
+    if (!object.motion) return line.at(proper_time);
+    const Followed now = follow(*inquiry.spacetime, inquiry.parameters, *object.motion,
+                                ObserverFrame::at_rest, proper_time, object.name);
+    return GeodesicPoint{proper_time, now.event, now.axes[0]};
+  };
+  GeodesicPoint here = at(tau);
+  for (int i = 0; i < 50 && std::fabs(here.event[0] - time) > 1e-9 && here.tangent[0] != 0; ++i) {
+    const double next = tau + (time - here.event[0]) / here.tangent[0];
+    try {
+      here = at(next);
+    } catch (const InputError&) {
+      break;  // there is no way so far
+    }
+    tau = next;
   }
   return here;
 }
@@ -45,8 +59,9 @@ Projection projection(const Inquiry& inquiry, const Object& object, double time,
     return {{worldline.event[1], worldline.event[2]}, {Vector{{1, 0, 0}}, Vector{{0, 1, 0}}}};
   GeodesicPoint here{0, worldline.event, {}};
   host::Vec4<double> u = {{1, 0, 0, 0}};  // in the static tetrad
-  if (!worldline.is_static()) {
-    here = worldline_at(inquiry, worldline, time, tau);
+  const bool moves = object.motion || !worldline.is_static();
+  if (moves) {
+    here = worldline_at(inquiry, object, time, tau);
     u.c = in_static_tetrad(*inquiry.spacetime, inquiry.parameters, here.event, here.tangent);
   }
   const auto axes = inquiry.spacetime->static_tetrad(inquiry.parameters, here.event);
@@ -57,7 +72,7 @@ Projection projection(const Inquiry& inquiry, const Object& object, double time,
     local[i + 1] = 1;
     local = host::boost(host::opposite(u), local);
     for (std::size_t a = 0; a < 4; ++a) step = step + local[a] * host::Vec4<double>{axes[a]};
-    const double late = worldline.is_static() ? 0 : step[0] / here.tangent[0];
+    const double late = moves && here.tangent[0] != 0 ? step[0] / here.tangent[0] : 0;
     for (std::size_t row = 0; row < 2; ++row) out.rows[row][i] = step[row + 1] - late * here.tangent[row + 1];
   }
   return out;

@@ -176,5 +176,30 @@ TEST(FallingSphere, TracedShiftTendsToThePointFormula) {
   }
 }
 
+TEST(LocalObjects, AreMetExactlyAtTheirPoles) {
+  for (const std::string metric : {"minkowski", "goedel"}) {
+    const Traced traced =
+        trace_text(R"({"metric": {"name": ")" + metric + R"("}, "observer": {"event": [0, 0, 0, 0]},
+      "camera": {"type": "perspective", "fov_deg": 10, "resolution": [1, 1], "forward": [0, 0, 1], "up": [1, 0, 0]},
+      "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": 0.2}, "placing": {"type": "local",
+      "worldline": {"type": "static", "event": [0, 0, 0, 3]}}}]})");
+    ASSERT_EQ(traced.hits(), 1U) << metric;
+    traced.for_each_hit([](const HitRecord& hit, std::size_t, std::size_t) {
+      EXPECT_NEAR(hit.v, 0, 1e-12);
+      EXPECT_TRUE(hit.u >= 0 && hit.u <= 1);
+      EXPECT_NEAR(hit.Z, 2.8, 1e-12);
+    });
+  }
+}
+
+TEST(LocalObjects, FallAlongTheAxisOfTheGoedelUniverse) {
+  const std::string scene = R"({"metric": {"name": "goedel"}, "observer": {"event": [0, 0.5, 0, 0]},
+    "camera": {"type": "sphere", "resolution": [64, 32]},
+    "objects": [{"name": "ball", "shape": {"type": "sphere", "radius": 0.2}, "placing": {"type": "local",
+    "worldline": {"type": "geodesic", "event": [0, 0, 0, 1.5], "velocity": [)";
+  EXPECT_GT(trace_text(scene + "0, 0, 0.3]}}}]}").hits(), 5U);
+  EXPECT_EQ(trace_text(scene + "0, 0, 0.3]}}}]}").hits(), trace_text(scene + "1e-12, 0, 0.3]}}}]}").hits());
+}
+
 }  // namespace
 }  // namespace nullcone::test

@@ -12,6 +12,7 @@
 #include "core/trace/metric.h"
 #include "core/trace/shapes.h"
 #include "tests/random_rays.h"
+#include "tests/reference_cases.h"
 #include "tests/same_picture.h"
 
 namespace nullcone::test {
@@ -294,6 +295,42 @@ TEST(Worldlines, PiecesInFlatSpace) {
     compare(in_pieces({{1, 2, 3}}, pieces), 0.05, {{random.uniform(0, 30), 12, -1, 1}}, worst);
   }
   report("pieces", worst, 1e-12, 0.05);
+}
+
+/// PHYSICS: a ray straight through the centre comes in one radius (times the ratio of frequencies) before it.
+TEST(Worldlines, TheRetardedPosition) {
+  for (const json& c : cases_of("sr_retarded_position")) {
+    const Vec3<double> P = to_vec3(c["inputs"]["position_at_reception_time"]),
+                       V = to_vec3(c["inputs"]["velocity"]), E = to_vec3(c["expected"]["emission_pos"]);
+    const double t_e = c["expected"]["ct_emission"];
+    char event[128], velocity[128], before[128], head[256];
+    std::snprintf(event, sizeof event, "[0, %.17g, %.17g, %.17g]", P[0], P[1], P[2]);
+    std::snprintf(velocity, sizeof velocity, "[%.17g, %.17g, %.17g]", V[0], V[1], V[2]);
+    std::snprintf(before, sizeof before, "[-1000, %.17g, %.17g, %.17g]", P[0] - 1000 * V[0],
+                  P[1] - 1000 * V[1], P[2] - 1000 * V[2]);
+    std::snprintf(head, sizeof head,
+                  R"({"metric": {"name": "minkowski"}, "observer": {"event": [0, 0, 0, 0]}, "camera": {"type":
+                  "perspective", "fov_deg": 1, "resolution": [1, 1], "forward": [%.17g, %.17g, %.17g]}, "objects": [)",
+                  E[0], E[1], E[2]);
+    const std::string at = std::string(R"("event": )") + event, v = std::string(R"("velocity": )") + velocity;
+    const std::vector<std::string> lines = {
+        R"({"type": "geodesic", )" + at + ", " + v + "}",
+        R"({"type": "accelerated", "acceleration": [0, 0, 0], )" + at + ", " + v + "}",
+        R"({"type": "piecewise", )" + at + R"(, "pieces": [{"duration": 9, )" + v + "}]}",
+        R"({"type": "piecewise", )" + at + R"(, "pieces": [{"duration": 5, )" + v + R"(}, {"duration": 1}]})",
+        std::string(R"({"type": "tabulated", "events": [)") + before + ", " + event + "]}"};
+    for (const std::string& line : lines) {
+      const Traced traced = trace_text(
+          head +
+          (R"({"name": "ball", "shape": {"type": "sphere", "radius": 0.01}, "placing": {"type": "local",
+                  "worldline": )" +
+           line + "}}]}"));
+      ASSERT_EQ(traced.hits(), 1U) << line;
+      traced.for_each_hit([&](const HitRecord& hit, std::size_t, std::size_t) {
+        EXPECT_NEAR(hit.t - 0.01 * hit.shift, t_e, 3 * tolerance(c, t_e)) << line;
+      });
+    }
+  }
 }
 
 /// A scene with an object whose placing has this worldline, and what else.

@@ -108,6 +108,10 @@ void change_placing(JsonObject& changes, json& placing) {
     return;
   }
   json& worldline = placing.at("worldline");
+  const auto type = worldline.at("type").get<std::string>();
+  for (const char* key : {"event", "velocity"})
+    if (changes.has(key) && type != "static" && type != "geodesic")
+      changes.refuse(key, "the object's worldline is '" + type + "'; expected no change of it");
   copy_event(changes, worldline);
   if (!changes.has("velocity")) return;
   read_velocity(changes, "velocity");

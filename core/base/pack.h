@@ -39,13 +39,20 @@ SinCos<xsimd::batch<double, A>> reduced_sincos(const xsimd::batch<double, A>& x)
           xsimd::select((quadrant == B(1.0)) | (quadrant == B(2.0)), -cosine, cosine)};
 }
 
+/// xsimd's atan2, but 0 for (0, 0), where that gives NaN.
+template <class A>
+xsimd::batch<double, A> direction_of(const xsimd::batch<double, A>& y, const xsimd::batch<double, A>& x) {
+  using B = xsimd::batch<double, A>;
+  return xsimd::atan2(y, xsimd::select((x == B(0.0)) & (y == B(0.0)), B(1.0), x));
+}
+
 // One lane: plain double takes lane 0 of the SSE2 functions, so that it agrees with every pack to the last
 // bit.
 inline SinCos<double> sincos(double x) {
   const auto [s, c] = reduced_sincos(OneLane(x));
   return {s.get(0), c.get(0)};
 }
-inline double atan2(double y, double x) { return xsimd::atan2(OneLane(y), OneLane(x)).get(0); }
+inline double atan2(double y, double x) { return direction_of(OneLane(y), OneLane(x)).get(0); }
 inline double exp(double x) { return xsimd::exp(OneLane(x)).get(0); }
 inline double log(double x) { return xsimd::log(OneLane(x)).get(0); }
 inline double sqrt(double x) { return __builtin_sqrt(x); }
@@ -71,7 +78,7 @@ inline long double select(bool choose, long double a, long double b) { return ch
 
 // Packs.
 inline SinCos<Pack> sincos(const Pack& x) { return reduced_sincos(x); }
-inline Pack atan2(const Pack& y, const Pack& x) { return xsimd::atan2(y, x); }
+inline Pack atan2(const Pack& y, const Pack& x) { return direction_of(y, x); }
 inline Pack exp(const Pack& x) { return xsimd::exp(x); }
 inline Pack log(const Pack& x) { return xsimd::log(x); }
 inline Pack sqrt(const Pack& x) { return xsimd::sqrt(x); }

@@ -6,14 +6,15 @@ import {cameraAngles, cameraAxes, cross, dot, scaled, sum, unit} from "./relativ
 const kMetric = {goedel: {a: 1}}; // what a scene may leave out
 const kRadians = Math.PI / 180;
 
-/** Those of one object, or null where it has no place (a sky). */
+/** Those of one object, or null where it has no place (a sky), or one of its own. */
 function objectNumbers({shape, placing}) {
   if (!placing) return null;
   const out = {};
   if (placing.type === "coordinate") {
     out.event = [0, ...placing.centre];
   } else {
-    const {event, velocity = [0, 0, 0]} = placing.worldline;
+    const {type, event, velocity = [0, 0, 0]} = placing.worldline;
+    if (type !== "static" && type !== "geodesic") return null; // a way that is not to be steered
     Object.assign(out, {event: [...event], velocity: [...velocity]});
   }
   if (shape.type === "sphere") out.radius = shape.radius;
