@@ -89,7 +89,7 @@ Moving on_circle(double r, double v, double z, bool clockwise) {
                 b[2]};
     return out;
   };
-  char text[256];
+  char text[1024];
   std::snprintf(text, sizeof text,
                 R"({"type": "circular", "event": [0, %.17g, 0, %.17g], "speed": %.17g, "clockwise": %s})", r,
                 z, v, clockwise ? "true" : "false");
@@ -110,7 +110,7 @@ Moving on_hyperbola(const Vec3<double>& start, double a, const Vec3<double>& n) 
     return out;
   };
   const Vec3<double> push = a * n;
-  char text[256];
+  char text[1024];
   std::snprintf(
       text, sizeof text,
       R"({"type": "accelerated", "event": [0, %.17g, %.17g, %.17g], "acceleration": [%.17g, %.17g, %.17g]})",
@@ -134,7 +134,7 @@ Moving in_pieces(const Vec3<double>& start, const std::vector<std::pair<Vec3<dou
       }
     begins.push_back({P, u, axes});
     P = P + L(duration) * u;
-    char text[256];
+    char text[1024];
     std::snprintf(text, sizeof text, R"(%s{"velocity": [%.17g, %.17g, %.17g], "duration": %.17g})",
                   json.empty() ? "" : ", ", velocity[0], velocity[1], velocity[2], duration);
     json += text;
@@ -149,7 +149,7 @@ Moving in_pieces(const Vec3<double>& start, const std::vector<std::pair<Vec3<dou
     out.P = out.P + (tau - from[i]) * out.u;
     return out;
   };
-  char text[128];
+  char text[1024];
   std::snprintf(text, sizeof text, R"({"type": "piecewise", "event": [0, %.17g, %.17g, %.17g], "pieces": [)",
                 start[0], start[1], start[2]);
   return {text + json + "]}", line, {from.begin() + 1, from.end()}, -60, 60};
@@ -167,7 +167,7 @@ void compare(const Moving& moving, double radius, const Vec4<double>& at, Figure
   const Vec4<L> from = o - moving.line(tau_r).P;
   const double distance = static_cast<double>(norm(spatial(from)));
   if (distance < 3 * radius) return;
-  char head[512];
+  char head[1024];
   std::snprintf(head, sizeof head,
                 R"({"metric": {"name": "minkowski"}, "observer": {"event": [%.17g, %.17g, %.17g, %.17g]},
                 "camera": {"type": "perspective", "fov_deg": %.17g, "resolution": [24, 24], "forward": [%.17g, %.17g, %.17g], "up": [0.1, 0.2, 1]},)",
@@ -303,7 +303,7 @@ TEST(Worldlines, TheRetardedPosition) {
     const Vec3<double> P = to_vec3(c["inputs"]["position_at_reception_time"]),
                        V = to_vec3(c["inputs"]["velocity"]), E = to_vec3(c["expected"]["emission_pos"]);
     const double t_e = c["expected"]["ct_emission"];
-    char event[128], velocity[128], before[128], head[256];
+    char event[256], velocity[256], before[256], head[1024];
     std::snprintf(event, sizeof event, "[0, %.17g, %.17g, %.17g]", P[0], P[1], P[2]);
     std::snprintf(velocity, sizeof velocity, "[%.17g, %.17g, %.17g]", V[0], V[1], V[2]);
     std::snprintf(before, sizeof before, "[-1000, %.17g, %.17g, %.17g]", P[0] - 1000 * V[0],
@@ -337,11 +337,11 @@ TEST(Worldlines, TheRetardedPosition) {
 std::string with_ball(const std::string& metric, const std::string& more, const std::string& shape,
                       const std::string& worldline, const std::string& placing = "") {
   return R"({"metric": {"name": )" + metric + R"(}, "camera": {"type": "sphere", "resolution": )" +
-         pixels(240, 120) + "}, " + more + R"(, "objects": [{"name": "ball", "shape": )" + shape +
+         pixels(360, 180) + "}, " + more + R"(, "objects": [{"name": "ball", "shape": )" + shape +
          R"(, "placing": {"type": "local", "worldline": )" + worldline + placing + "}}]}";
 }
-const std::string kBall = R"({"type": "sphere", "radius": 0.2})",
-                  kBox = R"({"type": "box", "edges": [0.3, 0.2, 0.25]})";
+const std::string kBall = R"({"type": "sphere", "radius": 0.35})",
+                  kBox = R"({"type": "box", "edges": [0.6, 0.5, 0.4]})";
 
 /// Otherwise the same scene with the first worldline and the second.
 void expect_same_way(const std::string& metric, const std::string& more, const std::string& first,
@@ -369,7 +369,7 @@ TEST(Worldlines, AccelerationByNothingIsAGeodesic) {
 }
 
 std::string text_of_event(const Event& x) {
-  char text[128];
+  char text[1024];
   std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g, %.17g]", x[0], x[1], x[2], x[3]);
   return text;
 }
@@ -396,7 +396,7 @@ TEST(Worldlines, FreeCirclesAreGeodesics) {
        "kerr_schild",
        {1, 0.7, 0},
        {Motion::Type::circular, {-30, 8, 0, 0}, {}, {}, Motion::Pace::free, 0, false},
-       R"("observer": {"event": [0, 11, 2, 2]}, "accuracy": "reference")"}};
+       R"("observer": {"event": [0, 6, 4, 1]}, "accuracy": "reference")"}};
   for (const Case& c : cases) {
     const Spacetime& spacetime = find_spacetime(c.name);
     const Followed start = follow(spacetime, c.parameters, c.motion, ObserverFrame::at_rest, 0, "test");
@@ -407,7 +407,7 @@ TEST(Worldlines, FreeCirclesAreGeodesics) {
     const Tetrad<double> tetrad = {
         {Vec4<double>{rest[0]}, Vec4<double>{rest[1]}, Vec4<double>{rest[2]}, Vec4<double>{rest[3]}}};
     const Vec4<double> u = local_components(g, tetrad, Vec4<double>{start.axes[0]});
-    char velocity[128];
+    char velocity[1024];
     std::snprintf(velocity, sizeof velocity, "[%.17g, %.17g, %.17g]", u[1] / u[0], u[2] / u[0], u[3] / u[0]);
     const std::string event = R"("event": )" + text_of_event(c.motion.event);
     expect_same_way(c.metric, c.more,
@@ -451,17 +451,13 @@ TEST(Worldlines, AClosedTimelikeCircleInItsOwnPast) {
   EXPECT_EQ(line.time_rate, 0);
   const double turn = 2 * kPi / std::fabs(line.turning);
   const std::string circle = R"({"type": "circular", "event": [0, 2.6, 0, 0.1], "speed": "closed"})",
-                    observer = R"("observer": {"event": [2.2, 0.1, 0.2, 0.3]}, "max_lookback": 6)";
-  for (const std::string axes : {R"(, "axes": "static")"}) {
-    const std::string table = table_of(line, 0, turn, 2000);
-    expect_same_picture(with_ball(R"("goedel")", observer, kBall, circle, axes),
-                        with_ball(R"("goedel")", observer, kBall, table, axes), 1e-5, 5);
-  }
-  expect_same_picture(
-      with_ball(R"("goedel")", observer, kBall, circle),
-      with_ball(R"("goedel")", observer + R"(, "paths": "integrated", "accuracy": "reference")", kBall,
-                circle),
-      1e-7, 5);
+                    observer = R"("observer": {"event": [0.5, 0, 2, 0.3]}, "max_lookback": 6)",
+                    ball = R"({"type": "sphere", "radius": 0.1})", axes = R"(, "axes": "static")";
+  expect_same_picture(with_ball(R"("goedel")", observer, ball, circle, axes),
+                      with_ball(R"("goedel")", observer, ball, table_of(line, 0, turn, 2000), axes), 1e-5, 5);
+  const std::string integrated = observer + R"(, "paths": "integrated", "accuracy": "reference")";
+  expect_same_picture(with_ball(R"("goedel")", observer, ball, circle),
+                      with_ball(R"("goedel")", integrated, ball, circle), 1e-7, 5);
 }
 
 TEST(Worldlines, IntegratedPathsSeeTheSame) {
@@ -490,7 +486,7 @@ TEST(Worldlines, WhatCannotMoveSoIsRefused) {
   };
   EXPECT_EQ(refused(R"("minkowski")",
                     R"({"type": "tabulated", "events": [[0, 5, 0, 0], [1, 5.5, 0, 0], [2, 8, 0, 0]]})"),
-            "test: /objects/0/placing/worldline/events/0: is not slower than light on its way from here to "
+            "test: /objects/0/placing/worldline/events/1: is not slower than light on its way from here to "
             "the next event");
   EXPECT_EQ(refused(R"("minkowski")", R"({"type": "tabulated", "events": [[2, 5, 0, 0], [1, 5.5, 0, 0]]})"),
             "test: /objects/0/placing/worldline/events/0: goes into the past; expected events in the order "

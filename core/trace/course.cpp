@@ -95,7 +95,7 @@ class Layer {
     std::vector<CourseLeg> out;
     std::unique_ptr<Traveller> here = start.copy();
     double tau = 0, length = (seen_.most - seen_.least) / 64;
-    while (!here->ends_at(tau) && goes_on(*here, ahead)) {
+    while (!here->ends_at(tau, ahead) && goes_on(*here, ahead)) {
       const double kink = here->kink(tau, ahead);
       const double until = ahead ? std::min(kink, tau + length) : std::max(kink, tau - length);
       if (!try_leg(here, tau, until, out)) {

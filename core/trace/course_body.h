@@ -36,8 +36,6 @@ class CourseView {
   const CourseLeg* legs() const { return legs_; }
   std::size_t count() const { return count_; }
   double begin() const { return begin_; }  ///< chart time of the event
-  double first() const { return is_circle() ? -kFar : legs_[0].from; }
-  double last() const { return is_circle() ? kFar : legs_[count_ - 1].until; }
 
   /// How gyroscopes, or axes that keep their directions, turn against those of `at`.
   Precession turn() const {
@@ -145,7 +143,8 @@ struct Tube {
   std::size_t count = 0;
   double period_t = 0, period_tau = 0;  ///< after which it repeats itself; 0: it does not
   Vec3<double> centre{};
-  double radius = 0;  ///< a ball of the chart that holds all
+  double radius = 0;                  ///< a ball of the chart that holds all
+  double first = -kFar, last = kFar;  ///< proper times at which the object begins and ends
 
   /// For what moves at most so fast in the chart, in space and in time, along lambda.
   template <class S>
@@ -162,7 +161,12 @@ struct Tube {
       }
       const S in_space = (norm(X - convert<S>(part.centre)) - S(part.radius)) * per_speed;
       const S in_time = (abs(late) - S(part.half_t)) * per_pace;
-      const S clearance = max(in_space, in_time);
+      // The tube has room about the object: into a part of that a step may lead, lest it take ages to come
+      // near.
+      const S room =
+          select(in_space > in_time, S(0.03 * part.radius) * per_speed, S(0.03 * part.half_t) * per_pace);
+      const S outside = max(in_space, in_time),
+              clearance = select(outside > S(0.0), max(outside, room), outside);
       const auto nearer = clearance < out.clearance;
       const S since = max(S(-part.half_tau), min(S(part.half_tau), S(part.per_t) * late));
       out.clearance = select(nearer, clearance, out.clearance);

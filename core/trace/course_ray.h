@@ -117,9 +117,26 @@ struct CourseRay {
     const Nearby<S> nearby = look(lambda, out.clearance, &here);
     if (all(out.clearance > S(0.0))) return out;
     const Aboard<S> first = aboard(*body, here.event, here.tangent, nearby.tau);
-    const auto& line = body->line;
-    auto there = is_trusted(nearby, first) & (first.tau >= S(line.first())) & (first.tau <= S(line.last()));
+    const auto trusted = is_trusted(nearby, first);
+    const S off = max(max(S(body->tube.first) - first.tau, first.tau - S(body->tube.last)), S(0.0));
+    Mask<S> there = trusted & (off == S(0.0));
+    const S clearance = out.clearance;
+    out = curve_from(lambda, here, nearby, first, there);
+    // Where its rest frame does not reach, or before and behind its time, there is no object, nor soon.
+    const S past =
+        S(0.25) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
+    const S untimely = S(0.5) * off / max(abs(first.tau_slope), S(1e-300)) + S(0.01 * ball) / here.speed;
+    const S soon = min(min(past, S(0.2) * nearby.radius / here.speed), here.valid);
+    out.clearance =
+        select(there | (clearance > S(0.0)), clearance, select(trusted, min(soon, untimely), soon));
+    return out;
+  }
 
+ private:
+  /// The ray as the object sees it from `first` on: a curve through a few points, as far as it may be
+  /// trusted. Takes away from `there` what cannot be.
+  Sight<S> curve_from(const S& lambda, const Underway<S>& here, const Nearby<S>& nearby,
+                      const Aboard<S>& first, Mask<S>& there) const {
     const S speed = max(norm(first.slope), S(1e-300)), pace = max(abs(first.tau_slope), S(1e-300));
     S length = S(0.5) * max(norm(first.X) - S(ball), S(ball)) / speed;
     length = min(length, min(S(0.5) * nearby.reach / speed, S(0.5) * nearby.half_tau / pace));
@@ -135,18 +152,11 @@ struct CourseRay {
       there = there & (norm(on.X) < S(2.0) * (nearby.reach + S(ball))) &
               (abs(on.late) <= S(1e-6) * (norm(on.X) + S(ball)));
     }
-    const S clearance = out.clearance;
-    out = Curve<S, n>(X, slope, length).at(S(0.0));
+    Sight<S> out = Curve<S, n>(X, slope, length).at(S(0.0));
     out.X = first.X, out.slope = first.slope;
-    // Where its rest frame does not reach, or before and behind its time, there is no object, nor soon.
-    const S past =
-        S(0.25) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
-    const S soon = min(min(past, S(0.2) * nearby.radius / here.speed), here.valid);
-    out.clearance = select(there | (clearance > S(0.0)), clearance, soon);
     return out;
   }
 
- private:
   /// How far off the object surely is.
   Nearby<S> look(const S& lambda, S& clearance, Underway<S>* where = nullptr) const {
     const Underway<S> here = way.at(lambda);

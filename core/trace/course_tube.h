@@ -55,6 +55,41 @@ TubePart tube_part(const CourseBody<M>& body, double ball, double from, double u
   return out;
 }
 
+/// Whether in a part of its way every point of the bounding sphere can move with the object, into its future.
+template <Metric M>
+bool moves_timelike(const CourseBody<M>& body, const TubePart& part, double ball) {
+  using D = Dual<double, 1>;
+  if (!(part.reach > ball)) return false;
+  for (int n = 0; n < 32; ++n) {
+    const Vec4<D> x = body.event(D::variable(part.tau, 0), convert<D>(ball * golden_point(n, 32)));
+    const auto event = Vec4<double>::map([&](std::size_t c) { return x[c].v; });
+    const auto u = Vec4<double>::map([&](std::size_t c) { return x[c].d[0]; });
+    if (!(inner(body.metric.g(event), u, u) > 0)) return false;
+  }
+  return true;
+}
+template <Metric M>
+bool moves_timelike(const CourseBody<M>& body, double ball) {
+  for (std::size_t i = 0; i < body.tube.count; ++i)
+    if (!moves_timelike(body, body.tube.parts[i], ball)) return false;
+  return true;
+}
+
+/// Of a way that the object cannot go to its end, for it gets too fast for its size, what is about proper
+/// time 0.
+template <Metric M>
+void keep_what_fits(const CourseBody<M>& body, double ball, Tube& tube) {
+  std::size_t begin = 0;
+  while (begin + 1 < tube.count && tube.parts[begin].tau + tube.parts[begin].half_tau <= 0) ++begin;
+  std::size_t end = begin + 1;
+  const auto fits = [&](std::size_t i) { return moves_timelike(body, tube.parts[i], ball); };
+  while (fits(begin) && begin > 0 && fits(begin - 1)) --begin;
+  while (end < tube.count && fits(end)) ++end;
+  tube.parts += begin, tube.count = end - begin;
+  tube.first = tube.parts[0].tau - tube.parts[0].half_tau;
+  tube.last = tube.parts[tube.count - 1].tau + tube.parts[tube.count - 1].half_tau;
+}
+
 /// A tube and the list of its parts.
 struct TubeRoom {
   std::unique_ptr<TubePart[]> parts;
@@ -67,7 +102,9 @@ TubeRoom make_tube(const CourseBody<M>& body, double ball) {
   const Course& course = line.course();
   TubeRoom out;
   Tube& tube = out.tube;
-  tube.count = line.count();
+  constexpr std::size_t kMostParts = 256;  // each is looked at by every ray near the tube
+  const std::size_t legs_a_part = (line.count() + kMostParts - 1) / kMostParts;
+  if (!line.is_circle()) tube.count = (line.count() + legs_a_part - 1) / legs_a_part;
   const double turning = std::fabs(course.turning), around = 2 * std::numbers::pi / turning;
   if (line.is_circle()) tube.count = 1;
   if (turning > 0) {
@@ -78,7 +115,8 @@ TubeRoom make_tube(const CourseBody<M>& body, double ball) {
   for (std::size_t i = 0; i < tube.count; ++i) {
     TubePart& part = out.parts[i];
     if (!line.is_circle()) {
-      part = tube_part(body, ball, line.legs()[i].from, line.legs()[i].until);
+      const std::size_t first = i * legs_a_part, last = std::min(first + legs_a_part, line.count()) - 1;
+      part = tube_part(body, ball, line.legs()[first].from, line.legs()[last].until);
     } else if (turning > 0) {
       const double length = around / static_cast<double>(tube.count), from = length * static_cast<double>(i);
       part = tube_part(body, ball, from, from + length);
@@ -88,6 +126,7 @@ TubeRoom make_tube(const CourseBody<M>& body, double ball) {
     }
   }
   tube.parts = out.parts.get();
+  if (!line.is_circle()) keep_what_fits(body, ball, tube);
   Vec3<double> least{{kFar, kFar, kFar}}, most = -least;
   for (std::size_t i = 0; i < tube.count; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -128,21 +167,6 @@ std::pair<CourseBody<M>, std::unique_ptr<TubePart[]>> body_on_course(const M& me
   TubeRoom room = make_tube(body, ball);
   body.tube = room.tube;
   return {body, std::move(room.parts)};
-}
-
-/// Whether everywhere on its way every point of the bounding sphere can move with the object.
-template <Metric M>
-bool moves_timelike(const CourseBody<M>& body, double ball) {
-  using D = Dual<double, 1>;
-  for (std::size_t i = 0; i < body.tube.count; ++i)
-    for (int n = 0; n < 32; ++n) {
-      const double tau = body.tube.parts[i].tau;
-      const Vec4<D> x = body.event(D::variable(tau, 0), convert<D>(ball * golden_point(n, 32)));
-      const auto event = Vec4<double>::map([&](std::size_t c) { return x[c].v; });
-      const auto u = Vec4<double>::map([&](std::size_t c) { return x[c].d[0]; });
-      if (!(inner(body.metric.g(event), u, u) > 0)) return false;
-    }
-  return true;
 }
 
 /// The largest relative error of lengths within the object: where there is an isometry, none.

@@ -279,7 +279,7 @@ class Scheduled : public Traveller {
     tau_ = tau;
   }
   double kink(double tau, bool ahead) const override { return next_of(times_, tau, ahead); }
-  bool ends_at(double tau) const override { return tau <= 0 || tau >= times_.back(); }
+  bool ends_at(double tau, bool ahead) const override { return ahead ? tau >= times_.back() : tau <= 0; }
 
  private:
   V4 unit(const EventSpline::Point& P) const {
@@ -327,7 +327,7 @@ double free_rate(const Ground& ground, const V4& x, bool clockwise, const std::s
   const double root = std::sqrt(c1 * c1 - c0 * c2);
   const double omega = (-c1 + (clockwise == (c2 > 0) ? -root : root)) / c2;
   const V4 a{Circling{x.c, 1, omega}.acceleration(ground, x.c)};
-  const double size = std::fabs(c0) + std::fabs(c2 * omega * omega);
+  const double size = std::fabs(c0) + std::fabs(c1 * c1 / c2) + std::fabs(c2 * omega * omega);
   const double left = std::sqrt(std::fabs(inner(ground, x, a, a)) * -inner(ground, x, out, out));
   if (!(left < 1e-7 * size)) throw InputError(place, "there is no free circular motion through this event");
   return omega;
@@ -391,7 +391,7 @@ Circling circling(const Ground& ground, const Motion& motion, const std::string&
 }
 
 double Traveller::kink(double, bool ahead) const { return ahead ? kNever : -kNever; }
-bool Traveller::ends_at(double) const { return false; }
+bool Traveller::ends_at(double, bool) const { return false; }
 
 std::unique_ptr<Traveller> set_out(const Ground& ground, const Motion& motion, ObserverFrame frame,
                                    const std::string& place) {

@@ -37,8 +37,8 @@ class Traveller {
   virtual Followed now() const = 0;
   /// The next proper time before or behind `tau` at which the way is not smooth, or ends: infinite if none.
   virtual double kink(double tau, bool ahead) const;
-  /// Whether the way goes on there.
-  virtual bool ends_at(double tau) const;
+  /// Whether there is no way ahead of `tau`, or behind it.
+  virtual bool ends_at(double tau, bool ahead) const;
 };
 
 /// The start of a motion, with the boosted axes of the tetrad `frame`. Relative errors are some 1e-13 of what

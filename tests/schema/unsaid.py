@@ -11,6 +11,7 @@ UNSAID = [
     (r"is parallel to \[0, 0, 1\]", "directions beside one another"),
     (r"expected a width of \d times the height", "the sides of maps of all directions"),
     (r"is on the axis", "places"),
+    (r"is the event before it once more", "neighbours in a list"),
     (r"expected less than the radius", "order of numbers"),
     (r"is nested too deep", "depth"),
     (r"is one body too many", "counts over many places"),
