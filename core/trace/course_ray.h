@@ -122,13 +122,15 @@ struct CourseRay {
     Mask<S> there = trusted & (off == S(0.0));
     const S clearance = out.clearance;
     out = curve_from(lambda, here, nearby, first, there);
-    // Where its rest frame does not reach, or before and behind its time, there is no object, nor soon.
+    // Where its rest frame does not reach, before and behind its time, and about kinks, steps are careful.
     const S past =
         S(0.25) * max(nearby.reach - S(ball), S(0.1 * ball)) / frequency(*body, nearby.tau, here.tangent);
-    const S untimely = S(0.5) * off / max(abs(first.tau_slope), S(1e-300)) + S(0.01 * ball) / here.speed;
+    const S gap = max(norm(first.X) - S(ball), S(0.04 * ball)) / max(norm(first.slope), S(1e-300));
+    const S waits = off / max(abs(first.tau_slope), S(1e-300));
+    const S careful = select(off > S(0.0), S(0.5) * waits + S(0.01 * ball) / here.speed, S(0.25) * gap);
     const S soon = min(min(past, S(0.2) * nearby.radius / here.speed), here.valid);
     out.clearance =
-        select(there | (clearance > S(0.0)), clearance, select(trusted, min(soon, untimely), soon));
+        select(there | (clearance > S(0.0)), clearance, select(trusted, min(soon, careful), soon));
     return out;
   }
 
