@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/trace/circling.h"
 #include "core/trace/ground.h"
 
 namespace nullcone {

@@ -48,15 +48,4 @@ class Traveller {
 std::unique_ptr<Traveller> set_out(const Ground& ground, const Motion& motion, ObserverFrame frame,
                                    const std::string& place);
 
-/// Circular motion about the chart's z axis: that of a symmetry, with u = (t', J x w, 0).
-struct Circling {
-  Event start;
-  double time_rate, turning;  ///< a unit of proper time
-
-  Event event(double tau) const;
-  Event velocity(const Event& x) const { return {time_rate, -turning * x[2], turning * x[1], 0}; }
-  Event acceleration(const Ground& ground, const Event& x) const;
-};
-Circling circling(const Ground& ground, const Motion& motion, const std::string& place);
-
 }  // namespace nullcone
