@@ -13,13 +13,13 @@ NULLCONE_KERNEL_BEGIN
 /// ball is outside of which the search does not look.
 template <Metric M, class Shape>
 AnyPlaced<M> place(const M& metric, const Placing& placing, const Course* course, const Shape& shape,
-                   double margin) {
+                   double margin, std::unique_ptr<TubePart[]>& tube) {
   const double ball = shape.bounding_radius(), wide = margin * ball;
   if (course != nullptr) {
-    auto [body, parts] = body_on_course(metric, *course, placing, wide);
+    const CourseBody<M> body = body_on_course(metric, *course, placing, wide, tube);
     CourseBody<M> seen = body;
     if (Shape::isotropic) seen.spin.rate = 0;
-    return Placed<CoursePlacing<M>, CourseBody<M>, Shape>{{seen, wide, std::move(parts)}, body, shape};
+    return Placed<CoursePlacing<M>, CourseBody<M>, Shape>{{seen, wide}, body, shape};
   }
   const Vec4<double> event{placing.worldline.event};
   const Matrix3<double> axes = axes_of(placing);
@@ -52,6 +52,7 @@ class ClosedTracer final : public Tracer {
         lookback_(scene.max_lookback),
         lookback_t_(scene.max_lookback_t),
         objects_(new AnyPlaced<M>[rules_.objects]),
+        tubes_(new std::unique_ptr<TubePart[]>[rules_.objects]),
         clocks_(new Clock[rules_.objects]),
         opacities_(new double[rules_.objects]),
         light_rules_(scene.lights),
@@ -73,7 +74,7 @@ class ClosedTracer final : public Tracer {
       const Placing placing =
           object.course ? object.placing : from_observation<M>(object.placing, observation_[0]);
       objects_[i] = with_shape(object.shape, [&](const auto& shape) {
-        return place(metric_, placing, object.course.get(), shape, margin);
+        return place(metric_, placing, object.course.get(), shape, margin, tubes_[i]);
       });
       with_type(objects_[i], [&](const auto& placed) {
         if constexpr (requires { placed.body.tube; }) clocks_[i] = clock_of(placed.body, observation_[0]);
@@ -272,6 +273,7 @@ class ClosedTracer final : public Tracer {
   Vec4<double> observation_;
   double lookback_, lookback_t_;
   std::unique_ptr<AnyPlaced<M>[]> objects_;
+  std::unique_ptr<std::unique_ptr<TubePart[]>[]> tubes_;  ///< of those on courses
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> opacities_;
   LightRules light_rules_;

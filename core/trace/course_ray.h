@@ -180,7 +180,6 @@ template <Metric M>
 struct CoursePlacing {
   CourseBody<M> body;  ///< of round shapes without their spin: nothing is seen of it
   double ball;
-  std::unique_ptr<TubePart[]> parts;
 
   template <class S>
   using Ray = CourseRay<S, CourseBody<M>, PathWay<M, S>>;

@@ -159,14 +159,16 @@ double proper_time_at(const CourseBody<M>& body, double t) {
   return nearest->tau;
 }
 
-/// A body with its tube, and the room of that.
+/// A body with its tube, which stands in `room`. (What variants hold must be copied plainly: moves would
+/// bring code that instruction sets share.)
 template <Metric M>
-std::pair<CourseBody<M>, std::unique_ptr<TubePart[]>> body_on_course(const M& metric, const Course& course,
-                                                                     const Placing& placing, double ball) {
+CourseBody<M> body_on_course(const M& metric, const Course& course, const Placing& placing, double ball,
+                             std::unique_ptr<TubePart[]>& room) {
   CourseBody<M> body = course_body(metric, course, placing);
-  TubeRoom room = make_tube(body, ball);
-  body.tube = room.tube;
-  return {body, std::move(room.parts)};
+  TubeRoom made = make_tube(body, ball);
+  body.tube = made.tube;
+  room = std::move(made.parts);
+  return body;
 }
 
 /// The largest relative error of lengths within the object: where there is an isometry, none.

@@ -15,6 +15,7 @@ class IntegratedTracer final : public Tracer {
         observation_{scene.observer.event},
         departure_{camera_.from, has_film(scene.camera)},
         objects_(new MarchObject<M>[rules_.objects]),
+        tubes_(new std::unique_ptr<TubePart[]>[rules_.objects]),
         clocks_(new Clock[rules_.objects]),
         distortions_(new double[rules_.objects]()) {
     setting_ = {
@@ -77,12 +78,13 @@ class IntegratedTracer final : public Tracer {
     const M& metric = setting_.system.metric;
     if (object.course) {
       const double ball = shape.bounding_radius();
-      auto [body, parts] = body_on_course(metric, *object.course, object.placing, ball);
+      const CourseBody<M> body =
+          body_on_course(metric, *object.course, object.placing, ball, tubes_[number - 1]);
       distortions_[number - 1] = distortion_of(body, ball);
       CourseBody<M> seen = body;
       if (S::isotropic) seen.spin.rate = 0;
-      return keep(Marched<CourseMap<M>, CourseBody<M>, S>{{seen, ball, std::move(parts)}, body, shape},
-                  object, number, clock_of(body, observation_[0]), unfit);
+      return keep(Marched<CourseMap<M>, CourseBody<M>, S>{{seen, ball}, body, shape}, object, number,
+                  clock_of(body, observation_[0]), unfit);
     }
     if (object.placing.type == PlacingType::coordinate) {
       const ChartBody<M> body{metric, event, axes_of(object.placing)};
@@ -106,8 +108,8 @@ class IntegratedTracer final : public Tracer {
   }
 
   template <class Body, class Map, class S>
-  bool keep(Marched<Map, Body, S>&& marched, const Object& object, std::uint32_t number, const Clock& clock,
-            Unfit& unfit) {
+  bool keep(const Marched<Map, Body, S>& marched, const Object& object, std::uint32_t number,
+            const Clock& clock, Unfit& unfit) {
     unfit.reason = fault_of(setting_.system.metric, marched.body, marched.shape, object.shape, observation_);
     if (unfit.reason) return false;
     const double ball = marched.shape.bounding_radius();
@@ -130,7 +132,7 @@ class IntegratedTracer final : public Tracer {
       made.centre = marched.map.centre;
       made.chart_ball = marched.map.stretch * ball;
     }
-    made.marched = std::move(marched);
+    made.marched = marched;
     clocks_[number - 1] = clock;
     return true;
   }
@@ -238,6 +240,7 @@ class IntegratedTracer final : public Tracer {
   Vec4<double> observation_;
   Departure<M> departure_;
   std::unique_ptr<MarchObject<M>[]> objects_;
+  std::unique_ptr<std::unique_ptr<TubePart[]>[]> tubes_;  ///< of those on courses
   std::unique_ptr<Clock[]> clocks_;
   std::unique_ptr<double[]> distortions_;
   MarchSetting<M> setting_;

@@ -44,7 +44,6 @@ template <Metric M>
 struct CourseMap {
   CourseBody<M> body;  ///< of round shapes without their spin: nothing is seen of it
   double ball;
-  std::unique_ptr<TubePart[]> parts;
 
   template <class S>
   Located<S> locate(const Vec4<S>& event, const Vec4<S>& tangent) const {
@@ -217,7 +216,8 @@ struct MarchObject {
   decltype(auto) with_curve(const std::array<Phase<S>, n>& at, const std::array<Phase<S>, n>& rate,
                             const S& length, F&& f) const {
     return with_type(marched, [&](const auto& object) {
-      if constexpr (requires { object.map.parts; }) return f(object.map.ray(at, rate, length), object.shape);
+      if constexpr (requires { object.map.body.tube; })
+        return f(object.map.ray(at, rate, length), object.shape);
       std::array<Vec3<S>, n> X, slope;
       for (std::size_t k = 0; k < n; ++k) {
         const Located<S> here = object.map.locate(at[k].x, rate[k].x);
