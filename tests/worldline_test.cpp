@@ -326,7 +326,7 @@ TEST(Worldlines, TheRetardedPosition) {
            line + "}}]}"));
       ASSERT_EQ(traced.hits(), 1U) << line;
       traced.for_each_hit([&](const HitRecord& hit, std::size_t, std::size_t) {
-        EXPECT_NEAR(hit.t - 0.01 * hit.shift, t_e, 3 * tolerance(c, t_e)) << line;
+        EXPECT_NEAR(hit.t - 0.01 * hit.shift, t_e, tolerance(c, t_e)) << line;
       });
     }
   }
