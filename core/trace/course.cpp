@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/trace/circling.h"
 #include "core/trace/ground.h"
+#include "core/trace/local_frame.h"
 
 namespace nullcone {
 
@@ -167,9 +168,8 @@ Course course_on_circle(const Frame& frame, const Circling& circle) {
     const V4 slope = V4{{0, -circle.turning * E[2], circle.turning * E[1], 0}} + connection(ground, x, u, E);
     for (std::size_t i = 1; i < 4; ++i) W[i][j] = -inner(ground, x, V4{start.axes[i]}, slope);
   }
-  const host::Vec3<double> omega = {{W[2][3] - W[3][2], W[3][1] - W[1][3], W[1][2] - W[2][1]}};
-  out.turn_rate = 0.5 * host::norm(omega);
-  if (out.turn_rate > 0) out.turn_axis = host::normalised(omega).c;
+  const auto precession = host::Precession::of(W);
+  out.turn_axis = precession.axis, out.turn_rate = precession.rate;
   return out;
 }
 

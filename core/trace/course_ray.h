@@ -26,12 +26,8 @@ struct PathWay {
     Sight<S> bounds;
     bound_at_rest(path, P, bounds);
     const S frequency2 = P.local[0] * P.local[0];
-    const S pace = abs(P.tangent[0]);
-    const auto straight = bounds.bend_max == S(0.0);
-    if (all(straight)) return {P.event, P.tangent, bounds.slope_max, pace, bounds.valid, straight};
-    return {P.event,          P.tangent,
-            bounds.slope_max, pace + S(metric->bend_of_time()) * frequency2 * bounds.valid,
-            bounds.valid,     straight};
+    const S pace = abs(P.tangent[0]) + S(metric->bend_of_time()) * frequency2 * bounds.valid;
+    return {P.event, P.tangent, bounds.slope_max, pace, bounds.valid, bounds.bend_max == S(0.0)};
   }
 };
 
@@ -169,7 +165,12 @@ struct CourseRay {
     // What recedes on a straight line never comes back.
     const auto gone = here.straight & (gap > S(0.0)) & (dot(from_tube, spatial(here.tangent)) > S(0.0));
     Nearby<S> out{gap / here.speed, S(0.0), S(0.0), S(0.0), S(0.0)};
-    if (!all(gap > S(tube.radius))) out = tube.near(here.event, here.speed, here.pace);
+    const auto outside = gap > S(tube.radius);
+    if (!all(outside)) {
+      const S by_ball = out.clearance;
+      out = tube.near(here.event, here.speed, here.pace);
+      out.clearance = select(outside, by_ball, out.clearance);  // whatever the neighbours do
+    }
     clearance = select(gone, S(kFar), max(min(out.clearance, here.valid), S(0.0)));
     return out;
   }

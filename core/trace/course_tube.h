@@ -58,18 +58,10 @@ TubePart tube_part(const CourseBody<M>& body, double ball, double from, double u
 /// Whether in a part of its way every point of the bounding sphere can move with the object, into its future.
 template <Metric M>
 bool moves_timelike(const CourseBody<M>& body, const TubePart& part, double ball) {
-  using D = Dual<double, 1>;
-  if (!(part.reach > ball)) return false;
-  for (int n = 0; n < 32; ++n) {
-    const Vec4<D> x = body.event(D::variable(part.tau, 0), convert<D>(ball * golden_point(n, 32)));
-    const auto event = Vec4<double>::map([&](std::size_t c) { return x[c].v; });
-    const auto u = Vec4<double>::map([&](std::size_t c) { return x[c].d[0]; });
-    if (!(inner(body.metric.g(event), u, u) > 0)) return false;
-  }
-  return true;
+  return part.reach > ball && moves_timelike(body.metric, body, ball, part.tau);
 }
 template <Metric M>
-bool moves_timelike(const CourseBody<M>& body, double ball) {
+bool moves_timelike(const M&, const CourseBody<M>& body, double ball) {
   for (std::size_t i = 0; i < body.tube.count; ++i)
     if (!moves_timelike(body, body.tube.parts[i], ball)) return false;
   return true;
@@ -90,43 +82,48 @@ void keep_what_fits(const CourseBody<M>& body, double ball, Tube& tube) {
   tube.last = tube.parts[tube.count - 1].tau + tube.parts[tube.count - 1].half_tau;
 }
 
-/// A tube and the list of its parts.
-struct TubeRoom {
-  std::unique_ptr<TubePart[]> parts;
-  Tube tube;
-};
+/// Of motion on a circle: how many parts a turn has.
+inline std::size_t parts_of_turn(const Course& course, double around) {
+  return static_cast<std::size_t>(std::clamp(std::ceil(2.5 * around / course.pace), 8.0, 256.0));
+}
 
+/// Lays the parts of a tube into `room`.
 template <Metric M>
-TubeRoom make_tube(const CourseBody<M>& body, double ball) {
+Tube lay_parts(const CourseBody<M>& body, double ball, std::unique_ptr<TubePart[]>& room) {
+  constexpr std::size_t kMostParts = 256;  // each is looked at by every ray near the tube
   const CourseView& line = body.line;
   const Course& course = line.course();
-  TubeRoom out;
-  Tube& tube = out.tube;
-  constexpr std::size_t kMostParts = 256;  // each is looked at by every ray near the tube
-  const std::size_t legs_a_part = (line.count() + kMostParts - 1) / kMostParts;
-  if (!line.is_circle()) tube.count = (line.count() + legs_a_part - 1) / legs_a_part;
-  const double turning = std::fabs(course.turning), around = 2 * std::numbers::pi / turning;
-  if (line.is_circle()) tube.count = 1;
-  if (turning > 0) {
-    tube.count = static_cast<std::size_t>(std::clamp(std::ceil(2.5 * around / course.pace), 8.0, 256.0));
-    tube.period_tau = around, tube.period_t = around * course.time_rate;
-  }
-  out.parts.reset(new TubePart[tube.count]);
-  for (std::size_t i = 0; i < tube.count; ++i) {
-    TubePart& part = out.parts[i];
-    if (!line.is_circle()) {
+  Tube out;
+  if (!line.is_circle()) {
+    const std::size_t legs_a_part = (line.count() + kMostParts - 1) / kMostParts;
+    out.count = (line.count() + legs_a_part - 1) / legs_a_part;
+    room.reset(new TubePart[out.count]);
+    for (std::size_t i = 0; i < out.count; ++i) {
       const std::size_t first = i * legs_a_part, last = std::min(first + legs_a_part, line.count()) - 1;
-      part = tube_part(body, ball, line.legs()[first].from, line.legs()[last].until);
-    } else if (turning > 0) {
-      const double length = around / static_cast<double>(tube.count), from = length * static_cast<double>(i);
-      part = tube_part(body, ball, from, from + length);
-    } else {  // it rests
-      part = tube_part(body, ball, 0.0, 0.0);
-      part.half_t = part.half_tau = kFar, part.per_t = 1 / course.time_rate;
+      room[i] = tube_part(body, ball, line.legs()[first].from, line.legs()[last].until);
     }
+  } else if (course.turning != 0) {
+    const double around = 2 * std::numbers::pi / std::fabs(course.turning);
+    out.count = parts_of_turn(course, around);
+    out.period_tau = around, out.period_t = around * course.time_rate;
+    room.reset(new TubePart[out.count]);
+    const double length = around / static_cast<double>(out.count);
+    for (std::size_t i = 0; i < out.count; ++i) {
+      const double from = length * static_cast<double>(i);
+      room[i] = tube_part(body, ball, from, from + length);
+    }
+  } else {  // it rests
+    out.count = 1;
+    room.reset(new TubePart[1]{tube_part(body, ball, 0.0, 0.0)});
+    room[0].half_t = room[0].half_tau = kFar, room[0].per_t = 1 / course.time_rate;
   }
-  tube.parts = out.parts.get();
-  if (!line.is_circle()) keep_what_fits(body, ball, tube);
+  out.parts = room.get();
+  if (!line.is_circle()) keep_what_fits(body, ball, out);
+  return out;
+}
+
+/// A ball about all parts.
+inline void enclose(Tube& tube) {
   Vec3<double> least{{kFar, kFar, kFar}}, most = -least;
   for (std::size_t i = 0; i < tube.count; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -136,7 +133,6 @@ TubeRoom make_tube(const CourseBody<M>& body, double ball) {
   tube.centre = 0.5 * (least + most);
   for (std::size_t i = 0; i < tube.count; ++i)
     tube.radius = max(tube.radius, norm(tube.parts[i].centre - tube.centre) + tube.parts[i].radius);
-  return out;
 }
 
 /// The body of an object on a course, whose event stands at the time `begin`; it has no tube yet.
@@ -165,9 +161,8 @@ template <Metric M>
 CourseBody<M> body_on_course(const M& metric, const Course& course, const Placing& placing, double ball,
                              std::unique_ptr<TubePart[]>& room) {
   CourseBody<M> body = course_body(metric, course, placing);
-  TubeRoom made = make_tube(body, ball);
-  body.tube = made.tube;
-  room = std::move(made.parts);
+  body.tube = lay_parts(body, ball, room);
+  enclose(body.tube);
   return body;
 }
 
@@ -179,12 +174,8 @@ double distortion_of(const CourseBody<M>& body, double ball) {
     for (std::size_t part = 0; part < body.tube.count; ++part) {
       const double tau = body.tube.parts[part].tau;
       const auto axes = body.line.at(tau).axes;
-      for (int n = 0; n < 32; ++n) {
-        const Matrix4<double> g = body.metric.g(body.event(tau, ball * golden_point(n, 32)));
-        for (std::size_t i = 1; i < 4; ++i)
-          for (std::size_t j = 1; j <= i; ++j)
-            worst = max(worst, std::fabs(inner(g, axes[i], axes[j]) + (i == j ? 1 : 0)));
-      }
+      for (int n = 0; n < 32; ++n)
+        worst = max(worst, skewness(body.metric.g(body.event(tau, ball * golden_point(n, 32))), axes));
     }
   return 0.5 * worst;  // lengths are roots
 }

@@ -12,6 +12,15 @@ struct Precession {
   std::array<double, 3> axis = {0, 0, 1};
   double rate = 0;  ///< radians a unit of proper time
 
+  /// Of axes whose components change by dR/dtau = -W R, the indices from 1.
+  static Precession of(const double (&W)[4][4]) {
+    const Vec3<double> omega = {{W[2][3] - W[3][2], W[3][1] - W[1][3], W[1][2] - W[2][1]}};
+    Precession out;
+    out.rate = 0.5 * norm(omega);
+    if (out.rate > 0) out.axis = normalised(omega).c;
+    return out;
+  }
+
   /// Rotates X by -angle (into the frame of the gyroscopes) or +angle (out of it), by Rodrigues' formula.
   template <class S>
   Vec3<S> rotate(const S& tau, const Vec3<S>& X, double sign) const {
@@ -91,6 +100,28 @@ inline Vec3<double> golden_point(int n, int count) {
   return {{flat * c, flat * s, z}};
 }
 
+/// Whether at its proper time tau every point of a ball can move with a body: 4-velocities must be timelike.
+template <Metric M, class Body>
+bool moves_timelike(const M& metric, const Body& body, double ball, double tau) {
+  using D = Dual<double, 1>;
+  for (int n = 0; n < 64; ++n) {
+    const Vec4<D> x = body.event(D::variable(tau, 0), convert<D>(ball * golden_point(n, 64)));
+    const auto event = Vec4<double>::map([&](std::size_t i) { return x[i].v; });
+    const auto u = Vec4<double>::map([&](std::size_t i) { return x[i].d[0]; });
+    if (!(inner(metric.g(event), u, u) > 0)) return false;
+  }
+  return true;
+}
+
+/// How far spatial vectors e_1 … e_3 are from orthonormal.
+inline double skewness(const Matrix4<double>& g, const std::array<Vec4<double>, 4>& e) {
+  double worst = 0;
+  for (std::size_t i = 1; i < 4; ++i)
+    for (std::size_t j = 1; j <= i; ++j)
+      worst = std::fmax(worst, std::fabs(inner(g, e[i], e[j]) + (i == j ? 1 : 0)));
+  return worst;
+}
+
 /// The proper time at which something is no longer late: Newton's method from `tau`, a lane at its own pace.
 /// `late` takes a Dual<S, 1>. NaN where there is none nearby.
 template <class S, class Lateness>
@@ -139,9 +170,7 @@ void LocalFrame<M>::prepare() {
                                connection(metric, P.event, P.tangent, value);
     for (std::size_t i = 1; i < 4; ++i) W[i][j] = -inner(g, carried_axis(*this, 0.0, i), slope);
   }
-  const Vec3<double> omega = {{W[2][3] - W[3][2], W[3][1] - W[1][3], W[1][2] - W[2][1]}};
-  precession.rate = 0.5 * norm(omega);
-  if (precession.rate > 0) precession.axis = normalised(omega).c;
+  precession = Precession::of(W);
 }
 
 NULLCONE_KERNEL_END
