@@ -125,8 +125,8 @@ struct Object {
   /// Where the worldline is no geodesic: its event stands in the placing, too.
   std::shared_ptr<const Motion> motion;
   std::shared_ptr<const Course> course;  ///< made of the motion when the scene is prepared
-  double opacity = 1;        ///< channel A
-  bool transparent = false;  ///< what stands behind it is recorded too
+  double opacity = 1;                    ///< channel A
+  bool transparent = false;              ///< what stands behind it is recorded too
 };
 
 /// A lamp: a point on a worldline, or a small rigid shape about it whose surface shines evenly.
