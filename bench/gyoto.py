@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """GYOTO (Debian: gyoto-bin) beside Nullcone on this machine: Kerr 0.9, the same screen of impact parameters.
 
+  scripts/build.sh release studies
   gyoto.py [--work-precision build/release/bin/work_precision] [--side 24]
 
 GYOTO's rays a second come from its library alone (the integration without anything around it) where the headers of

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace nullcone::postrender {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kMostLight = 1e30f;  ///< beyond, 0 times infinity would be no number
 
 constexpr auto kOnes = [] {
@@ -17,8 +15,6 @@ constexpr auto kOnes = [] {
   out.fill(1.0f);
   return out;
 }();
-
-bool is_ratio(float g) { return g > 0 && g < kInfinity; }
 
 /// Dark where g is no ratio.
 float power_of(float g, double power) {

@@ -15,8 +15,6 @@ constexpr int kFewestBits = 2, kMostBits = 10;
 constexpr double kError = 3e-5, kDark = 1e-30;
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 
-bool sensible(float g) { return g > 0 && g < std::numeric_limits<float>::infinity(); }
-
 }  // namespace
 
 LitTable::LitTable(AnySpectrum lamp, AnySpectrum reflectance, const Effects& effects, const Sensor& sensor,
@@ -110,7 +108,7 @@ LitTableView LitTable::view() const {
 }
 
 Rgb LitTable::color(float g, float g_light) const {
-  if (!sensible(g) || !sensible(g_light)) return {};
+  if (!is_ratio(g) || !is_ratio(g_light)) return {};
   const auto [i, s] = along_.find(g);
   const auto [j, t] = across_.find(g_light);
   return cells_[static_cast<std::size_t>(i) * static_cast<std::size_t>(across_.cells) +

@@ -14,7 +14,7 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t kSteps = 64;  ///< between two keyframes of a spectrum
-constexpr double kColdest_K = 1, kHottest_K = 1e9, kMostIntense = 1e12;
+constexpr double kColdest_K = 1, kHottest_K = 1e9;
 
 Clock parse_clock(JsonObject& in, std::string_view key) {
   return in.word(key, {"t", "tau"}) == "tau" ? Clock::tau : Clock::t;

@@ -8,8 +8,6 @@ namespace nullcone::postrender {
 
 namespace {
 
-constexpr double kMostIntense = 1e12;
-
 std::set<int> parse_paths(JsonObject& in, int recorded) {
   std::set<int> out;
   const nlohmann::json& list = in.at("paths");

@@ -10,8 +10,6 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr ShiftRange kNone = {kInfinity, 0};
 
-bool sensible(float g) { return g > 0 && g < kInfinity; }
-
 void include(ShiftRange& range, float g) {
   range.from = std::min(range.from, g);
   range.to = std::max(range.to, g);
@@ -25,7 +23,7 @@ std::vector<ShiftRange> shift_ranges(const Dataset& dataset) {
   const Hits& hits = dataset.hits;
   std::vector<ShiftRange> out(dataset.manifest.objects.size(), kNone);
   for (std::size_t i = 0; i < hits.shift.size(); ++i)
-    if (sensible(hits.shift[i])) include(out[hits.id[i] - 1], hits.shift[i]);
+    if (is_ratio(hits.shift[i])) include(out[hits.id[i] - 1], hits.shift[i]);
   std::ranges::transform(out, out.begin(), found);
   return out;
 }
@@ -40,7 +38,7 @@ std::vector<std::vector<LightShifts>> light_shift_ranges(const Dataset& dataset)
     const std::size_t lamp = path / static_cast<std::size_t>(dataset.manifest.light_paths);
     for (std::size_t i = 0; i < hits.count(); ++i) {
       const float g = hits.shift.empty() ? 1.0f : hits.shift[i], product = g * light.shift[i];
-      if (!(light.E[i] > 0 && sensible(light.shift[i]) && g > 0 && sensible(product))) continue;
+      if (!(light.E[i] > 0 && is_ratio(light.shift[i]) && g > 0 && is_ratio(product))) continue;
       LightShifts& range = out[hits.id[i] - 1][lamp];
       include(range.light, light.shift[i]);
       include(range.product, product);

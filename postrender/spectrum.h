@@ -10,6 +10,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct Effects {
   }
 };
 
+/// Whether a record's number can be a frequency ratio: positive and finite.
+inline bool is_ratio(float g) { return g > 0 && g < std::numeric_limits<float>::infinity(); }
 /// Frequency ratios from..to, both positive and finite.
 struct ShiftRange {
   float from = 1, to = 1;

@@ -5,7 +5,9 @@
 set -eu
 cd "$(dirname "$0")/.."
 scripts/install-deps.sh --test
+scripts/build.sh debug   # each file alone: none lives by the headers of its neighbours
 scripts/build.sh release
+scripts/build.sh release studies
 NULLCONE_SOAK=${NULLCONE_SOAK:-3} build/release/bin/trace_test --gtest_filter='Crossings*'
 NULLCONE_KILLS=40 bash tests/kill_test.sh build/release/bin .
 NULLCONE_NOISE=30000 /usr/bin/python3 tests/view/hostile_test.py build/release/bin .   # strangers at the viewer's door

@@ -10,8 +10,6 @@ namespace {
 
 using namespace host;
 
-LightSink lit(const Scene& scene) { return test::lit(Minkowski{}, scene); }
-
 /// Irradiance from a parallel rectangle of intensity 1 along its normal, on the axis of its centre at
 /// distance d: I/(ab) times the integral of cos^2/r^2.
 double from_parallel_rectangle(double a, double b, double d) {

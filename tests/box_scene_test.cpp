@@ -85,12 +85,12 @@ void expect_crossing(const HitRecord& hit, const HitDetail& detail, const SeenBy
   }
 }
 
-struct Counts {
+struct BoxCounts {
   std::size_t rays = 0, crossings = 0, missed = 0, invented = 0, other = 0;
 };
 
 /// Every crossing of every ray with transparent boxes, or the first of each ray with opaque ones.
-void compare(const Traced& traced, bool opaque, Counts& counts) {
+void compare(const Traced& traced, bool opaque, BoxCounts& counts) {
   for (const RayOfPicture& ray : by_ray(traced)) {
     ++counts.rays;
     expect_sorted(ray);
@@ -128,7 +128,7 @@ void compare(const Traced& traced, bool opaque, Counts& counts) {
 
 TEST(BoxScene, EveryCrossingTellsWhatTheSlabsTell) {
   Random random(21);
-  Counts counts;
+  BoxCounts counts;
   for (int trial = 0; trial < (kSanitized ? 1 : 3); ++trial)
     for (const bool opaque : {false, true}) {
       std::string objects;

@@ -11,10 +11,10 @@ namespace {
 
 using namespace nullcone::host;
 
-constexpr int kRays = kSanitized ? 10'000 : 150'000;
-constexpr double kLimit = 100;
+constexpr int kBoxRays = kSanitized ? 10'000 : 150'000;
+constexpr double kBoxLimit = 100;
 
-struct Tally {
+struct BoxTally {
   int rays = 0, hits = 0, missed = 0, invented = 0, misplaced = 0, given_up = 0, unpaired = 0, moved = 0;
 
   /// `rounding` is a length: what may be called either way.
@@ -23,9 +23,9 @@ struct Tally {
                double resolution, double rounding) {
     ++rays;
     hits += oracle.meets();
-    const Search<double> first = first_crossing(ray, box, kLimit, resolution);
+    const Search<double> first = first_crossing(ray, box, kBoxLimit, resolution);
     bool lost = first.given_up;
-    const std::vector<double> all = all_crossings(ray, box, kLimit, resolution, lost);
+    const std::vector<double> all = all_crossings(ray, box, kBoxLimit, resolution, lost);
     given_up += lost;
     missed += oracle.meets() && (!first.met || all.empty()) && oracle.depth() > rounding;
     unpaired += all.size() != 0 && all.size() != 2;
@@ -50,7 +50,7 @@ struct Tally {
     EXPECT_EQ(given_up, 0);
     EXPECT_EQ(unpaired, 0);
     EXPECT_EQ(moved, 0);
-    EXPECT_GT(rays, kRays / 2);
+    EXPECT_GT(rays, kBoxRays / 2);
     EXPECT_GT(hits, rays / 8);
     EXPECT_LT(hits, rays * 7 / 8);
   }
@@ -58,11 +58,11 @@ struct Tally {
 
 /// Rays towards the point `target(edges)` of a box of random edges, in motion or at rest.
 template <class Target>
-Tally rays_towards(unsigned seed, double fastest, const Target& target) {
+BoxTally rays_towards(unsigned seed, double fastest, const Target& target) {
   Random random(seed);
-  Tally tally;
+  BoxTally tally;
   const Minkowski metric;
-  for (int n = 0; n < kRays; ++n) {
+  for (int n = 0; n < kBoxRays; ++n) {
     const Vec3<double> edges = random_edges(random, random.logarithmic(1e-3, 1));
     const Vec4<double> u = four_velocity(random.uniform(0, fastest) * random.direction());
     const Vec3<double> z = random.direction(), x = normalised(cross(random.direction(), z));
@@ -79,7 +79,7 @@ Tally rays_towards(unsigned seed, double fastest, const Target& target) {
                   along = boost(convert<L>(u), convert<L>(past));
     const auto rows = convert<L>(frame.axes);
     const BoxOracle oracle(rows * spatial(from), rows * spatial(along), edges);
-    if (!oracle.starts_outside() || oracle.enter > kLimit) continue;
+    if (!oracle.starts_outside() || oracle.enter > kBoxLimit) continue;
     const MovingPlacing<Minkowski> placing{frame, make_orbit(frame, 1), false};
     const LocalBody<Minkowski> body{frame, placing.orbit};
     const Box box{0.5 * edges[0], 0.5 * edges[1], 0.5 * edges[2]};

@@ -96,7 +96,7 @@ TEST_F(DatasetFile, WhereNothingCanBeWrittenNothingIsLeft) {
   EXPECT_EQ(listing(), std::vector<std::string>{"folder.exr"});
 }
 
-Dataset trace_text(const std::string& text, int threads) {
+Dataset trace_dataset(const std::string& text, int threads) {
   const Scene scene = read_scene(text, "scene", metric_descriptions());
   return trace_scene(find_spacetime(scene.metric), scene, "scene", threads);
 }
@@ -104,12 +104,12 @@ Dataset trace_text(const std::string& text, int threads) {
 TEST_F(DatasetFile, TracedAgainFromItsHeaderItIsTheSame) {
   nlohmann::json scene = nlohmann::json::parse(std::ifstream(NULLCONE_SOURCE "/scenes/goedel_earth.json"));
   scene["camera"]["resolution"] = {132, 50};  // four bands, the last one short
-  const Dataset one = trace_text(scene.dump(), 1), two = trace_text(scene.dump(), 2);
+  const Dataset one = trace_dataset(scene.dump(), 1), two = trace_dataset(scene.dump(), 2);
   EXPECT_GT(one.hits.count(), 100u);
   EXPECT_EQ(one.manifest.hits_sha256, two.manifest.hits_sha256);
   EXPECT_EQ(one.manifest.rays_sha256, two.manifest.rays_sha256);
   write(path, one);
-  const Dataset again = trace_text(read_manifest(path).scene, 2);
+  const Dataset again = trace_dataset(read_manifest(path).scene, 2);
   EXPECT_EQ(again.manifest.hits_sha256, one.manifest.hits_sha256);
   EXPECT_EQ(again.manifest.scene_sha256, one.manifest.scene_sha256);
   EXPECT_EQ(verify(read_dataset(path)), std::vector<std::string>{});

@@ -14,8 +14,6 @@ namespace {
 
 using namespace host;
 
-LightSink lit(const Scene& scene) { return test::lit(Minkowski{}, scene); }
-
 using L = long double;
 
 /// Eqs. (18) and (19) of Weiskopf, Kraus and Ruder (1999) in the patch's rest frame: the retarded lamp by

@@ -52,6 +52,8 @@ template <host::Metric M>
 LightSink lit(const M& metric, const Scene& scene) {
   return lit_by<host::ClosedTracer<M>>(metric, scene);
 }
+/// In flat spacetime.
+inline LightSink lit(const Scene& scene) { return lit(host::Minkowski{}, scene); }
 
 inline Camera camera(int width, int height, double fov) {
   Camera out;

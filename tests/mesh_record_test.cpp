@@ -12,8 +12,6 @@ namespace {
 
 using namespace nullcone::host;
 
-constexpr int kRays = kSanitized ? 300 : 6'000;
-
 /// What is recorded of the first crossing of a ray with a mesh.
 struct WhatIsRecorded {
   Crossed<double> crossed;

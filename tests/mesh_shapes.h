@@ -10,9 +10,12 @@
 #include "core/trace/placing.h"
 #include "metrics/minkowski_kernel.h"
 #include "tests/random_rays.h"
+#include "tests/sanitized.h"
 
 namespace nullcone::test {
 namespace {
+
+constexpr int kRays = kSanitized ? 300 : 6'000;
 
 /// The icosahedron with each edge in n parts, its points drawn out to radius(direction): 20 n^2 triangles.
 template <class Radius>

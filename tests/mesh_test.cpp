@@ -11,8 +11,6 @@ namespace {
 
 using namespace nullcone::host;
 
-constexpr int kRays = kSanitized ? 300 : 6'000;
-
 double bumpy(const Vec3<double>& d) { return 1 + 0.2 * std::sin(5 * d[0]) * std::sin(4 * d[1] + 1); }
 
 /// One straight ray towards `aim`, from `from`.

@@ -46,8 +46,8 @@ TEST(Timelines, loop_and_blend_the_last_into_the_first) {
   EXPECT_EQ(loop.at({-0.5, 0}), (Place{3, 0, 0.5f}));
   EXPECT_EQ(loop.at({4e9 + 1, 0}), (Place{1, 1, 0}));
   EXPECT_EQ(loop.at({-1e-30, 0}).share, 0);  // rounds to the beginning
-  constexpr double kForever = std::numeric_limits<double>::infinity();
-  for (const double time : {kForever, -kForever, std::nan("")})
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double time : {infinity, -infinity, std::nan("")})
     EXPECT_EQ(loop.at({time, 0}), (Place{0, 0, 0}));
 }
 

@@ -167,7 +167,7 @@ TEST(PixelFilters, keep_the_light_of_a_point) {
 }
 
 /// Two half-transparent objects, varying everywhere, with a steep texture.
-Dataset busy(int width, int lines) {
+Dataset layered(int width, int lines) {
   return make_dataset(width, lines, {{"near"}, {"far"}}, [](int column, int row) {
     TestHit near, far;
     near.u = 0.03f * static_cast<float>(column % 30);
@@ -179,11 +179,11 @@ Dataset busy(int width, int lines) {
     return column % 7 == 3 ? std::vector<TestHit>{} : std::vector{near, far};
   });
 }
-constexpr const char* kBusyLook = R"({"objects":{"near":{"texture":{"type":"checkerboard","counts":[9,5],
+constexpr const char* kLayeredLook = R"({"objects":{"near":{"texture":{"type":"checkerboard","counts":[9,5],
     "colors":[[1,0,0],[0,1,0]]}},"far":{"spectrum":{"type":"black_body","temperature_K":5000}}}})";
 
 std::string with_filter(const PixelFilter& filter) {
-  nlohmann::json look = nlohmann::json::parse(kBusyLook);
+  nlohmann::json look = nlohmann::json::parse(kLayeredLook);
   look.update(nlohmann::json::parse(text_of(filter)));
   return look.dump();
 }
@@ -193,7 +193,7 @@ TEST(Samples, are_shaded_as_the_pixels_of_their_grid) {
   const int samples = 3;
   const std::string look = R"({"objects":{"near":{"texture":{"type":"checkerboard","counts":[9,5],
     "colors":[[1,0,0],[0,1,0]]}}}})";
-  const Dataset grid = busy(24, 15);
+  const Dataset grid = layered(24, 15);
   const Image fine = picture(grid, look), image = picture(gathered(grid, samples), look);
   ASSERT_EQ(image.width, 8);
   ASSERT_EQ(image.height, 5);
@@ -228,13 +228,14 @@ TEST(Samples, that_do_not_fit_are_refused) {
 TEST(Samples, of_one_a_pixel_need_no_filter) {
   EXPECT_TRUE(is_identity({}, 1));
   EXPECT_FALSE(is_identity({}, 2));
-  EXPECT_EQ(picture(busy(40, 30), with_filter({})).exposed, picture(busy(40, 30), kBusyLook).exposed);
+  EXPECT_EQ(picture(layered(40, 30), with_filter({})).exposed,
+            picture(layered(40, 30), kLayeredLook).exposed);
   EXPECT_FALSE(is_identity({Type::box, 1.5}, 1));
   EXPECT_FALSE(is_identity({Type::gaussian, 1}, 1));
 }
 
 TEST(Samples, pictures_do_not_depend_on_threads) {
-  const Dataset data = gathered(busy(120, 80), 2);
+  const Dataset data = gathered(layered(120, 80), 2);
   for (const PixelFilter& filter : kFilters) {
     const auto with_threads = [&](std::size_t count) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
@@ -250,7 +251,7 @@ TEST(Samples, pictures_do_not_depend_on_threads) {
 }
 
 TEST(Samples, what_is_kept_never_shows) {
-  const Dataset data = gathered(busy(40, 40), 2);
+  const Dataset data = gathered(layered(40, 40), 2);
   Renderer renderer(data);
   for (const PixelFilter& filter : {kFilters[0], kFilters[2], kFilters[2], kFilters[4], kFilters[0]}) {
     const Look look = look_of(with_filter(filter), renderer.manifest());

@@ -29,7 +29,7 @@ void write_thin_line(const std::string& path, int width) {
   out->close();
 }
 
-constexpr const char* kBoard = R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[16,8],
+constexpr const char* kEarthBoard = R"({"objects":{"earth":{"texture":{"type":"checkerboard","counts":[16,8],
     "colors":[[1,1,1],[0,0,0]]}}}})";
 constexpr const char* kLine = R"({"objects":{"earth":{"texture":{"type":"image","file":"line.png"}}}})";
 
@@ -48,13 +48,13 @@ TEST(RecordedSteps, turn_an_object_of_one_pixel_into_its_mean) {
   TestFolder folder;
   write_thin_line(folder.file("line.png"), 64);
   const std::size_t middle = 12;
-  EXPECT_NEAR(picture(speck({1, 0, 0, 1}), kBoard).display[middle].r, 0.5f, 1e-6f);
+  EXPECT_NEAR(picture(speck({1, 0, 0, 1}), kEarthBoard).display[middle].r, 0.5f, 1e-6f);
   EXPECT_NEAR(picture(speck({1, 0, 0, 1}), kLine, folder.path()).display[middle].r, 1.0f / 64, 1e-3f / 64);
   // Without them no neighbour counts, and the texture is sharp.
   Dataset blind = speck({1, 0, 0, 1});
   blind.hits.channels = blind.manifest.channels = kDefaultChannels;
   for (auto& steps : blind.hits.duv) steps.clear();
-  EXPECT_NEAR(picture(std::move(blind), kBoard).display[middle].r, 1, 1e-6f);
+  EXPECT_NEAR(picture(std::move(blind), kEarthBoard).display[middle].r, 1, 1e-6f);
 }
 
 TEST(RecordedSteps, that_are_unknown_blur_fully) {
@@ -62,7 +62,7 @@ TEST(RecordedSteps, that_are_unknown_blur_fully) {
   write_thin_line(folder.file("line.png"), 64);
   for (const float unknown : {INFINITY, -INFINITY, std::nanf(""), 1e30f}) {
     const Dataset data = speck({unknown, unknown, unknown, unknown});
-    EXPECT_NEAR(picture(data, kBoard).display[12].r, 0.5f, 1e-5f) << unknown;
+    EXPECT_NEAR(picture(data, kEarthBoard).display[12].r, 0.5f, 1e-5f) << unknown;
     EXPECT_NEAR(picture(data, kLine, folder.path()).display[12].r, 1.0f / 64, 1e-3f / 64) << unknown;
     // A texture that does not vary along u must not turn infinity into what is not a number.
     nlohmann::json flat = nlohmann::json::parse(kLine);

@@ -113,11 +113,11 @@ TEST(Records, GrazingChordsHaveTwoEnds) {
 }
 
 TEST(Records, LimbsUnderTheTelescope) {
-  const double kDegrees = 180 / std::numbers::pi;
+  const double degrees = 180 / std::numbers::pi;
   for (const double fov : {1.0, 1e-3, 1e-6, 1e-9}) {
     const std::string telescope =
         R"("type": "perspective", "resolution": [40, 40], "fov_deg": )" + text_of(fov);
-    const std::string azimuth = R"(, "azimuth_deg": )" + text_of(kDegrees * std::asin(0.2));
+    const std::string azimuth = R"(, "azimuth_deg": )" + text_of(degrees * std::asin(0.2));
     expect_pairs(scene_of("minkowski", telescope + azimuth,
                           local_object("o", sphere(1), {{5, 0, 0}}, kTransparent) + "," + kSky, kAtOrigin),
                  100);

@@ -21,6 +21,44 @@ json in_full(json scene, int width, int height) {
   return scene;
 }
 
+/// Objects on courses: circles and what spins, tables, pieces and accelerations, and an observer on one.
+std::vector<json> scenes_with_courses() {
+  const json round = json::parse(R"({"type": "circular", "event": [0, 1.4, 0, 0.1], "speed": 0.6})"),
+             pushed = json::parse(R"({"type": "accelerated", "event": [0, 0.2, -1, 0.2],
+               "velocity": [0.1, 0, 0.2], "acceleration": [0.1, 0.3, 0]})"),
+             pieces = json::parse(R"({"type": "piecewise", "event": [-1, -1, 0.3, 0], "pieces": [
+               {"velocity": [0.5, 0, 0], "duration": 1}, {"velocity": [0, 0.4, 0.2], "duration": 1}]})"),
+             table = json::parse(R"({"type": "tabulated", "events": [[-4, -0.2, -0.6, 0.9],
+               [-2, 0.1, -0.2, 0.9], [0, 0.2, 0.3, 0.8], [3, 0, 0.5, 0.7]]})"),
+             ball = {{"type", "sphere"}, {"radius", 0.2}},
+             house = {{"type", "box"}, {"edges", {0.4, 0.3, 0.2}}},
+             spin = {{"axis", {1, 2, 3}}, {"rate_deg", 40}};
+  const auto object = [](const char* name, const json& shape, const json& line) {
+    return json{{"name", name}, {"shape", shape}, {"placing", {{"type", "local"}, {"worldline", line}}}};
+  };
+  json flat = json::parse(R"({"metric": {"name": "minkowski"}, "observer": {"event": [1, 0.2, 0.1, -0.4]},
+    "camera": {"type": "sphere", "resolution": [120, 60]}, "max_lookback": 9})");
+  flat["objects"] = {object("round", house, round), object("pushed", ball, pushed),
+                     object("pieces", ball, pieces), object("table", house, table)};
+  flat["objects"][0]["placing"]["spin"] = spin;
+  json goedel = flat, integrated = flat, hole = flat;
+  goedel["metric"] = {{"name", "goedel"}, {"a", 3}};
+  goedel["observer"] = {
+      {"worldline", {{"type", "circular"}, {"event", {1, 0.3, 0.1, -0.4}}, {"speed", 0.3}}}};
+  integrated["metric"] = goedel["metric"];
+  integrated["paths"] = "integrated", integrated["accuracy"] = "draft";
+  hole["metric"] = {{"name", "kerr_schild"}, {"spin", 0.7}};
+  hole["observer"] = {{"event", {0, 6, 4, 1}}};
+  hole["accuracy"] = "draft", hole["max_lookback"] = 60;
+  json orbit = round;
+  orbit["event"] = {-30, 8, 0, 0}, orbit["speed"] = "free";
+  hole["objects"] = {object("orbit", {{"type", "box"}, {"edges", {1.5, 1.2, 1}}}, orbit)};
+  hole["objects"][0]["placing"]["spin"] = spin;
+  for (json* scene : {&integrated, &hole})
+    (*scene)["camera"]["resolution"] = {kSanitized ? 24 : 60, kSanitized ? 12 : 30};
+  return {flat, goedel, integrated, hole};
+}
+
 /// Scenes that use every placing and shape, smaller than life.
 std::vector<std::string> scenes() {
   json earth = json::parse(std::ifstream(NULLCONE_SOURCE "/scenes/goedel_earth.json"));
@@ -98,6 +136,10 @@ std::vector<std::string> scenes() {
   for (const json& scene : {earth, json::parse(moving), json::parse(resting), json::parse(hole), spheres,
                             film, cut, thrown, pierced, through})
     out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
+  for (const json& scene : scenes_with_courses()) {
+    out.push_back(scene.dump());
+    out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
+  }
   return out;
 }
 

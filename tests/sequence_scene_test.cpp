@@ -31,7 +31,7 @@ json sequence() {
     "look": {"exposure": {"ev": {"keyframes": [[0, -1], [4, 1]]}}}})");
 }
 
-json with(const char* pointer, const json& value) {
+json sequence_with(const char* pointer, const json& value) {
   json out = sequence();
   out[Pointer(pointer)] = value;
   return out;
@@ -49,7 +49,7 @@ std::string complaint(F&& f) {
   return {};
 }
 
-void expect_refused(const json& scene, const std::string& start, const std::string& part = "") {
+void expect_frame_refused(const json& scene, const std::string& start, const std::string& part = "") {
   const std::string found =
       complaint([&] { read_scene(canonical_json(at(scene, 1)), "s", metric_descriptions()); });
   EXPECT_TRUE(found.starts_with(start)) << "'" << found << "' does not begin with '" << start << "'";
@@ -81,7 +81,7 @@ TEST(Sequence, TimesAreEvenAndTheEndsExact) {
 }
 
 TEST(Sequence, ByProperTimeTheSceneItselfSaysWhereTheCameraIs) {
-  json scene = with("/frames/time", "proper");
+  json scene = sequence_with("/frames/time", "proper");
   scene["observer"]["event"][0] = json::parse(R"({"keyframes": [[0.5, 0], [2.5, 6]]})");
   EXPECT_EQ(at(scene, 1)["observer"]["event"], json::parse("[1.5, 0.25, 0, 0]"));
 }
@@ -98,23 +98,25 @@ TEST(Sequence, LooksKeepTheirKeyframes) {
 
 TEST(Sequence, WhatMakesNoSenseIsRefusedWithItsPlace) {
   const json keys = json::parse(R"({"keyframes": [[0, 1], [2, 3]]})");
-  expect_refused(with("/frames/count", 0), "s: /frames/count:", "from 1 to 1000000");
-  expect_refused(with("/frames/count", 1'000'001), "s: /frames/count:");
-  expect_refused(with("/frames/count", 2.5), "s: /frames/count:", "whole number");
-  expect_refused(with("/frames/step", 1), "s: /frames/step:", "unknown key");
-  expect_refused(with("/frames/time", "tau"), "s: /frames/time:", "coordinate, proper");
-  expect_refused(with("/frames/to", keys), "s: /frames/to:", "expected a number");
-  expect_refused(with("/frames", 25), "s: /frames:");
-  expect_refused(with("/observer/event/0", 1), "s: /observer/event/0:", "expected 0");
-  expect_refused(with("/observer/event/0", keys), "s: /observer/event/0:", "expected 0");
-  expect_refused(with("/camera/azimuth_deg/by", "frame"), "s: /camera/azimuth_deg/by:", "time");
-  expect_refused(with("/camera/azimuth_deg/keyframes/1/0", 0.5),
-                 "s: /camera/azimuth_deg/keyframes/1:", "later time");
-  expect_refused(with("/objects/0/name", keys), "s: /objects/0/name:", "found number");
-  expect_refused(with("/metric/name", keys), "s: /metric/name:", "found number");
-  expect_refused(with("/camera", keys), "s: /camera:", "expected an object");
-  expect_refused(with("/camera/resolution/0", json::parse(R"({"keyframes": [[0, 8], [2, 9]]})")),
-                 "s: /camera/resolution:", "whole numbers");
+  expect_frame_refused(sequence_with("/frames/count", 0), "s: /frames/count:", "from 1 to 1000000");
+  expect_frame_refused(sequence_with("/frames/count", 1'000'001), "s: /frames/count:");
+  expect_frame_refused(sequence_with("/frames/count", 2.5), "s: /frames/count:", "whole number");
+  expect_frame_refused(sequence_with("/frames/step", 1), "s: /frames/step:", "unknown key");
+  expect_frame_refused(sequence_with("/frames/time", "tau"), "s: /frames/time:", "coordinate, proper");
+  expect_frame_refused(sequence_with("/frames/to", keys), "s: /frames/to:", "expected a number");
+  expect_frame_refused(sequence_with("/frames", 25), "s: /frames:");
+  expect_frame_refused(sequence_with("/observer/event/0", 1), "s: /observer/event/0:", "expected 0");
+  expect_frame_refused(sequence_with("/observer/event/0", keys), "s: /observer/event/0:", "expected 0");
+  expect_frame_refused(sequence_with("/camera/azimuth_deg/by", "frame"),
+                       "s: /camera/azimuth_deg/by:", "time");
+  expect_frame_refused(sequence_with("/camera/azimuth_deg/keyframes/1/0", 0.5),
+                       "s: /camera/azimuth_deg/keyframes/1:", "later time");
+  expect_frame_refused(sequence_with("/objects/0/name", keys), "s: /objects/0/name:", "found number");
+  expect_frame_refused(sequence_with("/metric/name", keys), "s: /metric/name:", "found number");
+  expect_frame_refused(sequence_with("/camera", keys), "s: /camera:", "expected an object");
+  expect_frame_refused(
+      sequence_with("/camera/resolution/0", json::parse(R"({"keyframes": [[0, 8], [2, 9]]})")),
+      "s: /camera/resolution:", "whole numbers");
 }
 
 TEST(Sequence, TheReaderOfScenesTakesNone) {

@@ -12,15 +12,15 @@ namespace {
 
 using namespace nullcone::host;
 
-constexpr int kRays = kSanitized ? 4'000 : 60'000;
-constexpr double kLimit = 100;
+constexpr int kSolidRays = kSanitized ? 4'000 : 60'000;
+constexpr double kSolidLimit = 100;
 
 AnyShape shape_of(const Solid& solid, bool inside) {
   return AnyShape(
       SolidShape{solid.primitives.data(), solid.steps.data(), solid.steps.size(), solid.ball, inside});
 }
 
-struct Tally {
+struct SolidTally {
   int rays = 0, hits = 0, missed = 0, invented = 0, misplaced = 0, given_up = 0;
   double worst = 0;  ///< over the rounding that is allowed
 
@@ -30,7 +30,7 @@ struct Tally {
     EXPECT_EQ(misplaced, 0);
     EXPECT_EQ(given_up, 0);
     EXPECT_LT(worst, 0.1);
-    EXPECT_GT(rays, kRays / 2);
+    EXPECT_GT(rays, kSolidRays / 2);
     EXPECT_GT(hits, rays / 10);
   }
 };
@@ -42,9 +42,9 @@ std::vector<double> all_crossings(const Ray& ray, const Body& body, const AnySha
   std::vector<double> out;
   double lambda = 0;
   for (bool inside = shape.starts_inside(); out.size() < 40; inside = !inside) {
-    Search<double> search(kLimit);
+    Search<double> search(kSolidLimit);
     search.lambda = lambda;
-    advance(ray, Onward<double, AnyShape>{shape, inside}, kLimit, resolution, kSearchLimit, search);
+    advance(ray, Onward<double, AnyShape>{shape, inside}, kSolidLimit, resolution, kSearchLimit, search);
     given_up |= search.given_up;
     if (!search.met) return out;
     const auto X =
@@ -69,7 +69,7 @@ double steepness(const SolidOracle& oracle, SolidOracle::L lambda, SolidOracle::
 /// A ray against a solid at rest; `rounding` is a length: what may be called either way.
 template <class Ray, class Body>
 void compare(const SolidOracle& oracle, const Ray& ray, const Body& body, const AnyShape& shape,
-             double resolution, double rounding, Tally& tally) {
+             double resolution, double rounding, SolidTally& tally) {
   ++tally.rays;
   bool lost = false;
   const std::vector<double> found = all_crossings(ray, body, shape, resolution, lost);
@@ -77,7 +77,7 @@ void compare(const SolidOracle& oracle, const Ray& ray, const Body& body, const 
   const auto clear = oracle.clear_crossings(10 * rounding);
   tally.hits += !clear.empty();
   for (const auto expected : clear) {
-    if (expected > kLimit) continue;
+    if (expected > kSolidLimit) continue;
     double best = 1e300;
     for (const double lambda : found)
       best = std::min(best, static_cast<double>(std::fabs(lambda - expected)));
@@ -88,16 +88,16 @@ void compare(const SolidOracle& oracle, const Ray& ray, const Body& body, const 
   }
   for (const double lambda : found)
     tally.invented += static_cast<double>(std::fabs(oracle.distance(oracle.at(lambda)))) > rounding;
-  const Search<double> first = first_crossing(ray, shape, kLimit, resolution);
+  const Search<double> first = first_crossing(ray, shape, kSolidLimit, resolution);
   tally.missed += !clear.empty() && !first.met;
 }
 
 /// Rays towards solids at rest in the chart, from outside or inside. `make(random, scale)`.
 template <class Make>
-Tally rays_towards(unsigned seed, bool inside, double smallest, const Make& make) {
+SolidTally rays_towards(unsigned seed, bool inside, double smallest, const Make& make) {
   Random random(seed);
-  Tally tally;
-  while (tally.rays < kRays * 3 / 4) {
+  SolidTally tally;
+  while (tally.rays < kSolidRays * 3 / 4) {
     const double scale = random.logarithmic(smallest, 1);
     const Solid solid = make(random, scale);
     const AnyShape shape = shape_of(solid, inside);

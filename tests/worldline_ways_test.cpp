@@ -15,8 +15,6 @@ namespace {
 
 using namespace host;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A scene with an object whose placing has this worldline, and what else.
 std::string with_ball(const std::string& metric, const std::string& more, const std::string& shape,
                       const std::string& worldline, const std::string& placing = "") {
@@ -137,7 +135,7 @@ TEST(Worldlines, AClosedTimelikeCircleInItsOwnPast) {
   const Motion motion{Motion::Type::circular, {0, 2.6, 0, 0.1}, {}, {}, Motion::Pace::closed, 0, false};
   const Circling line = circling({find_spacetime("goedel"), a}, motion, "test");
   EXPECT_EQ(line.time_rate, 0);
-  const double turn = 2 * kPi / std::fabs(line.turning);
+  const double turn = 2 * std::numbers::pi / std::fabs(line.turning);
   const std::string circle = R"({"type": "circular", "event": [0, 2.6, 0, 0.1], "speed": "closed"})",
                     observer = R"("observer": {"event": [0.3, 0, 2.3, 0.3]}, "max_lookback": 6)",
                     ball = R"({"type": "sphere", "radius": 0.1})", axes = R"(, "axes": "static")";

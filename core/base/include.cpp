@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20, kLongestChain = 16, kDeepest = 64;
+constexpr std::size_t kMostBytes = std::size_t{64} << 20, kLongestChain = 16, kMostLevels = 64;
 constexpr int kMostIncludes = 10'000, kMostParts = 1'000'000;
 
 bool is_within(const fs::path& file, const fs::path& folder) {
@@ -81,7 +81,7 @@ class Including {
   }
 
   WholeJson resolve(json value, const std::string& pointer, std::size_t depth) {
-    if (depth > kDeepest) refuse(pointer, "nested deeper than 64 levels, with what is included");
+    if (depth > kMostLevels) refuse(pointer, "nested deeper than 64 levels, with what is included");
     if (is_include(value)) return resolve_include(std::move(value), pointer, depth, false);
     if (value.is_array()) return resolve_list(std::move(value), pointer, depth);
     WholeJson out{std::move(value), {chain_.back().name, pointer}};

@@ -25,25 +25,25 @@ std::string reserved_text(Manifest manifest) {
   return manifest_to_json(manifest) + std::string(96, ' ');
 }
 
-/// The three parts of a file that is being written.
-struct Parts {
-  Imf::StdOFStream stream;
-  Imf::MultiPartOutputFile file;
-  Imf::OutputPart preview;
-  Imf::DeepScanLineOutputPart hits;
-  Imf::OutputPart rays;
-
-  Parts(std::ofstream& to, const std::string& path, const std::vector<Imf::Header>& headers)
-      : stream(to, path.c_str()),
-        file(stream, headers.data(), static_cast<int>(headers.size())),
-        preview(file, exr::preview_part),
-        hits(file, exr::hits_part),
-        rays(file, exr::rays_part) {}
-};
-
 }  // namespace
 
 struct DatasetWriter::Impl {
+  /// The three parts of a file that is being written.
+  struct Parts {
+    Imf::StdOFStream stream;
+    Imf::MultiPartOutputFile file;
+    Imf::OutputPart preview;
+    Imf::DeepScanLineOutputPart hits;
+    Imf::OutputPart rays;
+
+    Parts(std::ofstream& to, const std::string& path, const std::vector<Imf::Header>& headers)
+        : stream(to, path.c_str()),
+          file(stream, headers.data(), static_cast<int>(headers.size())),
+          preview(file, exr::preview_part),
+          hits(file, exr::hits_part),
+          rays(file, exr::rays_part) {}
+  };
+
   Manifest manifest;
   std::string path, text;
   WholeFile whole;
