@@ -3,6 +3,7 @@
 #include <bit>
 #include <fstream>
 #include <iostream>
+#include <tuple>
 
 #include "tests/reference_cases.h"
 #include "tests/sanitized.h"
@@ -50,9 +51,12 @@ std::vector<json> scenes_with_courses() {
   hole["metric"] = {{"name", "kerr_schild"}, {"spin", 0.7}};
   hole["observer"] = {{"event", {0, 6, 4, 1}}};
   hole["accuracy"] = "draft", hole["max_lookback"] = 60;
-  json orbit = round;
-  orbit["event"] = {-30, 8, 0, 0}, orbit["speed"] = "free";
-  hole["objects"] = {object("orbit", {{"type", "box"}, {"edges", {1.5, 1.2, 1}}}, orbit)};
+  hole["objects"] = json::array();
+  for (const auto& [name, x, y] : {std::tuple{"first", 8, 0}, {"second", -7, 2}, {"third", 1, 9}}) {
+    json orbit = round;
+    orbit["event"] = {-30, x, y, 0}, orbit["speed"] = "free";
+    hole["objects"].push_back(object(name, {{"type", "box"}, {"edges", {3, 2.5, 2}}}, orbit));
+  }
   hole["objects"][0]["placing"]["spin"] = spin;
   for (json* scene : {&integrated, &hole})
     (*scene)["camera"]["resolution"] = {kSanitized ? 24 : 60, kSanitized ? 12 : 30};
