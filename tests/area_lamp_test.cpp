@@ -1,7 +1,6 @@
 // Lamps with area in flat spacetime: Weiskopf, Kraus and Ruder 1999, eq. (26), and soft shadows.
 #include <gtest/gtest.h>
 
-#include "metrics/minkowski_kernel.h"
 #include "tests/lit_scene.h"
 #include "tests/random_rays.h"
 

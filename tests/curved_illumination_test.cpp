@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/trace/lamps.h"
 #include "metrics/goedel_kernel.h"
 #include "metrics/minkowski_kernel.h"
 #include "tests/lit_scene.h"

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "metrics/minkowski_kernel.h"
+#include "core/base/boost.h"
+#include "core/trace/illumination.h"
 #include "tests/lit_scene.h"
 #include "tests/random_rays.h"
 

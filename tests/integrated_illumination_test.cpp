@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "metrics/goedel_kernel.h"
+#include "metrics/goedel.h"
 #include "metrics/kerr_schild.h"
-#include "metrics/minkowski_kernel.h"
-// After the spacetimes.
-#include "core/trace/integrated_tracer.h"
 #include "tests/lit_scene.h"
 #include "tests/random_rays.h"
 #include "tests/sanitized.h"
@@ -59,7 +56,7 @@ TEST(IntegratedIllumination, is_that_of_closed_forms) {
     const Goedel metric{1.2};
     const LightSink closed = lit(metric, scene);
     scene.integrated = true;
-    const LightSink integrated = lit_by<IntegratedTracer<Goedel>>(metric, scene);
+    const LightSink integrated = lit(metric, scene);
     const Compared here = compare(closed, integrated, 1e-6);
     all.lit += here.lit, all.shadowed += here.shadowed, all.differ += here.differ;
   }
@@ -77,7 +74,7 @@ TEST(IntegratedIllumination, is_that_of_flat_space_where_gravity_is_weak) {
   scene.max_lookback = 1e3;
   const LightSink flat = lit(Minkowski{}, scene);
   scene.integrated = true;
-  const LightSink curved = lit_by<IntegratedTracer<KerrSchild>>(hole, scene);
+  const LightSink curved = lit(hole, scene);
   ASSERT_EQ(flat.hits.size(), curved.hits.size());
   std::size_t lights = 0, shadows = 0, differ = 0;
   for (std::size_t i = 0; i < flat.hits.size(); ++i) {
@@ -101,7 +98,7 @@ TEST(IntegratedIllumination, of_a_lamp_in_a_gravitational_field_is_shifted) {
     scene.camera.forward = {lamp_is_deep ? 1.0 : -1.0, 0, 0};
     scene.camera.left = {0, lamp_is_deep ? 1.0 : -1.0, 0};
     scene.max_lookback = 1e4;
-    const LightSink found = lit_by<IntegratedTracer<KerrSchild>>(hole, scene);
+    const LightSink found = lit(hole, scene);
     const double deep = 1 - 2 / std::hypot(6.0, lamp_is_deep ? 2.0 : 0.0),
                  high = 1 - 2 / std::hypot(20.0, lamp_is_deep ? 0.0 : 2.0);
     const double expected = lamp_is_deep ? std::sqrt(deep / high) : std::sqrt(high / deep);

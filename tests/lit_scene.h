@@ -1,13 +1,18 @@
-// Scenes with lamps, made and traced by the templates themselves, with the light of every crossing in full
-// precision.
+// Scenes with lamps, with the light of every crossing in full precision.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/trace/closed_tracer.h"
+#include "core/trace/metric.h"
+#include "core/trace/trace_scene.h"
+#include "metrics/minkowski.h"
+#include "metrics/registry.h"
 
 namespace nullcone::test {
 
@@ -31,26 +36,25 @@ struct LightSink final : HitSink {
   const HitLight& light(std::size_t hit, std::size_t path = 0) const { return lights[hit * paths + path]; }
 };
 
-template <class Tracer, host::Metric M>
-LightSink lit_by(const M& metric, const Scene& scene) {
-  Tracer tracer(metric, scene);
-  Unfit unfit{};
-  if (!tracer.place_objects(scene, unfit)) throw InputError("scene", unfit.reason);
+/// Along closed forms where there are some and the scene does not ask otherwise.
+template <host::Metric M>
+LightSink lit(const M& metric, Scene scene) {
+  scene.metric = M::name;
+  const auto set = [&](const auto& parameter) {
+    scene.metric_parameters[std::string(parameter.name)] = metric.*parameter.member;
+  };
+  std::apply([&](const auto&... parameter) { (set(parameter), ...); }, M::parameters);
+  const auto tracer = prepare_scene(find_spacetime(scene.metric), scene, "scene");
   LightSink out;
-  out.tau_origin = tracer.lamp_tau_origin(0);
+  out.tau_origin = tracer->lamp_tau_origin(0);
   out.paths = scene.lights.lamps.size() * static_cast<std::size_t>(scene.lights.paths);
   const auto width = static_cast<std::size_t>(scene.camera.width);
   for (int line = 0; line < scene.camera.height; line += kBandLines) {
     const int lines = std::min(kBandLines, scene.camera.height - line);
     std::vector<RayRecord> rays(width * static_cast<std::size_t>(lines));
-    tracer.trace_band(line, lines, {out, rays});
+    tracer->trace_band(line, lines, {out, rays});
   }
   return out;
-}
-
-template <host::Metric M>
-LightSink lit(const M& metric, const Scene& scene) {
-  return lit_by<host::ClosedTracer<M>>(metric, scene);
 }
 /// In flat spacetime.
 inline LightSink lit(const Scene& scene) { return lit(host::Minkowski{}, scene); }
