@@ -6,6 +6,7 @@
 #include "tests/connected.h"
 #include "tests/followed.h"
 #include "tests/random_rays.h"
+#include "tests/sanitized.h"
 
 namespace nullcone::test {
 namespace {
@@ -65,6 +66,7 @@ TEST(LightCone, LightOfALampByAHoleIsNeitherLostNorMade) {
   const KerrSchild hole;
   const double R = 12;
   for (const double r : {6.0, 10.0}) {
+    if (kSanitized && r > 6) continue;
     const Vec4<double> lamp = {{0, 0, r, 0}};
     const Ball target{{{0, 0, 0}}, R};
     const LampScan<KerrSchild> scan(hole, kBalanced, lamp, 2, 1e6, &target, 1);

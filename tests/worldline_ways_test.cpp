@@ -9,6 +9,7 @@
 #include "core/trace/follow.h"
 #include "core/trace/metric.h"
 #include "tests/same_picture.h"
+#include "tests/sanitized.h"
 
 namespace nullcone::test {
 namespace {
@@ -24,11 +25,16 @@ std::string with_ball(const std::string& metric, const std::string& more, const 
 }
 const std::string kBall = R"({"type": "sphere", "radius": 0.35})",
                   kBox = R"({"type": "box", "edges": [0.6, 0.5, 0.4]})";
+// Sanitizers look at fewer of them: they are to find other mistakes.
+const std::vector<std::string> kShapes = kSanitized ? std::vector{kBox} : std::vector{kBall, kBox},
+                               kMetrics = kSanitized ? std::vector<std::string>{R"("goedel", "a": 3)"}
+                                                     : std::vector<std::string>{R"("minkowski")",
+                                                                                R"("goedel", "a": 3)"};
 
 /// Otherwise the same scene with the first worldline and the second.
 void expect_same_way(const std::string& metric, const std::string& more, const std::string& first,
                      const std::string& second, double limit,
-                     const std::vector<std::string>& shapes = {kBall, kBox}) {
+                     const std::vector<std::string>& shapes = kShapes) {
   for (const std::string& shape : shapes)
     expect_same_picture(with_ball(metric, more, shape, first), with_ball(metric, more, shape, second), limit,
                         5);
@@ -38,7 +44,7 @@ const std::string kNear = R"("observer": {"event": [0.3, 0.5, 0.4, 0.3]})";
 
 TEST(Worldlines, OnePieceIsAGeodesic) {
   const std::string event = R"("event": [-2, 1.4, 0.3, 0.1])", velocity = R"("velocity": [0.2, -0.5, 0.1])";
-  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
+  for (const std::string& metric : kMetrics)
     expect_same_way(
         metric, kNear, R"({"type": "geodesic", )" + event + ", " + velocity + "}",
         R"({"type": "piecewise", )" + event + R"(, "pieces": [{)" + velocity + R"(, "duration": 3}]})", 1e-8);
@@ -46,7 +52,7 @@ TEST(Worldlines, OnePieceIsAGeodesic) {
 
 TEST(Worldlines, AccelerationByNothingIsAGeodesic) {
   const std::string rest = R"("event": [-2, 1.4, 0.3, 0.1], "velocity": [0.2, -0.5, 0.1])";
-  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
+  for (const std::string& metric : kMetrics)
     expect_same_way(metric, kNear, R"({"type": "geodesic", )" + rest + "}",
                     R"({"type": "accelerated", "acceleration": [0, 0, 0], )" + rest + "}", 1e-8);
 }
@@ -63,7 +69,7 @@ TEST(Worldlines, FreeCirclesAreGeodesics) {
     std::vector<double> parameters;
     Motion motion;
     std::string more;
-    std::vector<std::string> shapes = {kBall, kBox};
+    std::vector<std::string> shapes = kShapes;
   };
   const std::vector<Case> cases = {
       {R"("goedel", "a": 3)",
@@ -83,6 +89,7 @@ TEST(Worldlines, FreeCirclesAreGeodesics) {
        R"("observer": {"event": [0, 6, 4, 1]}, "accuracy": "reference")",
        {R"({"type": "sphere", "radius": 0.9})", R"({"type": "box", "edges": [1.5, 1.2, 1]})"}}};
   for (const Case& c : cases) {
+    if (kSanitized && c.motion.clockwise) continue;
     const Spacetime& spacetime = find_spacetime(c.name);
     const Followed start = follow(spacetime, c.parameters, c.motion, ObserverFrame::at_rest, 0, "test");
     const auto rows = spacetime.metric(c.parameters, start.event);
@@ -154,8 +161,8 @@ TEST(Worldlines, IntegratedPathsSeeTheSame) {
       rest = R"({"type": "static", "event": [-2, 1.4, 0.3, 0.1]})",
       spin = R"(, "spin": {"axis": [1, 2, 3], "rate_deg": 40})",
       integrated = kNear + R"(, "paths": "integrated", "accuracy": "reference")";
-  for (const std::string metric : {R"("minkowski")", R"("goedel", "a": 3)"})
-    for (const std::string& line : {circle, fall, push, rest})
+  for (const std::string& metric : kMetrics)
+    for (const std::string& line : kSanitized ? std::vector{circle} : std::vector{circle, fall, push, rest})
       expect_same_picture(with_ball(metric, kNear, kBox, line, spin),
                           with_ball(metric, integrated, kBox, line, spin), 1e-6, 5);
 }
