@@ -57,9 +57,9 @@ std::vector<json> scenes_with_courses() {
     orbit["event"] = {-30, x, y, 0}, orbit["speed"] = "free";
     hole["objects"].push_back(object(name, {{"type", "box"}, {"edges", {3, 2.5, 2}}}, orbit));
   }
-  hole["objects"][0]["placing"]["spin"] = spin;
-  for (json* scene : {&integrated, &hole})
-    (*scene)["camera"]["resolution"] = {kSanitized ? 24 : 60, kSanitized ? 12 : 30};
+  hole["objects"][0]["placing"]["spin"] = {{"axis", {1, 2, 3}}, {"rate_deg", 10}};
+  for (json* scene : {&integrated, &hole}) (*scene)["camera"]["resolution"] = {60, 30};
+  if (kSanitized) return {hole};
   return {flat, goedel, integrated, hole};
 }
 
@@ -141,8 +141,8 @@ std::vector<std::string> scenes() {
                             film, cut, thrown, pierced, through})
     out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
   for (const json& scene : scenes_with_courses()) {
-    out.push_back(scene.dump());
-    out.push_back(smaller(in_full(scene, 60, 41).dump(), 18, 12));
+    out.push_back(smaller(scene.dump(), 48, 24));
+    out.push_back(smaller(in_full(scene, 60, 41).dump(), 30, 20));
   }
   return out;
 }
