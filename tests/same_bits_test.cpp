@@ -58,7 +58,8 @@ std::vector<json> scenes_with_courses() {
     hole["objects"].push_back(object(name, {{"type", "box"}, {"edges", {3, 2.5, 2}}}, orbit));
   }
   hole["objects"][0]["placing"]["spin"] = {{"axis", {1, 2, 3}}, {"rate_deg", 10}};
-  for (json* scene : {&integrated, &hole}) (*scene)["camera"]["resolution"] = {60, 30};
+  integrated["camera"]["resolution"] = {60, 30};
+  hole["camera"]["resolution"] = {80, 40};
   if (kSanitized) return {hole};
   return {flat, goedel, integrated, hole};
 }
