@@ -14,10 +14,10 @@
 
 namespace nullcone::postrender {
 
-/// A spectrum whose numbers change with the time of emission: either its temperature does, or it is one of
-/// several after the other.
 inline constexpr double kMostIntense = 1e12;  ///< of a look's intensities
 
+/// A spectrum whose numbers change with the time of emission: either its temperature does, or it is one of
+/// several after the other.
 struct SpectrumInTime {
   std::optional<Number> temperature_K;  ///< of a black body
   double reference_K = 1;               ///< that of the spectrum itself

@@ -50,6 +50,7 @@ struct Effects {
 
 /// Whether a record's number can be a frequency ratio: positive and finite.
 inline bool is_ratio(float g) { return g > 0 && g < std::numeric_limits<float>::infinity(); }
+
 /// Frequency ratios from..to, both positive and finite.
 struct ShiftRange {
   float from = 1, to = 1;

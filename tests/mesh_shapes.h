@@ -15,7 +15,7 @@
 namespace nullcone::test {
 namespace {
 
-constexpr int kRays = kSanitized ? 300 : 6'000;
+constexpr int kRays = kSanitized ? 300 : 6'000;  ///< of a test of meshes
 
 /// The icosahedron with each edge in n parts, its points drawn out to radius(direction): 20 n^2 triangles.
 template <class Radius>
