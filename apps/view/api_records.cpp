@@ -17,6 +17,17 @@ namespace pr = postrender;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
+namespace {
+
+constexpr int kMostPixels = 1 << 24;  ///< in a line or column
+
+/// The pixel of `there` in a line that has the place of pixel i of `here`.
+int scaled(int i, int here, int there) {
+  return static_cast<int>(static_cast<std::int64_t>(i) * there / here);
+}
+
+}  // namespace
+
 Answer Api::state(const Request&, Query& query) {
   query.finish();
   ordered_json datasets = ordered_json::array();
@@ -82,10 +93,16 @@ Answer Api::look(const Request& request, Query& query) {
 Answer Api::pixel(const Request& request, Query& query) {
   const Held held = hold(request, query);
   const Subject& subject = held.subject;
-  const int x = query.integer("x", 0, 1 << 30), y = query.integer("y", 0, 1 << 30);
+  const Manifest& m = subject.loaded->manifest();
+  const int width = query.integer("width", 1, kMostPixels, m.width),
+            height = query.integer("height", 1, kMostPixels, m.height);
+  const int x = query.integer("x", 0, width - 1), y = query.integer("y", 0, height - 1);
   query.finish();
-  return answer_of(
-      inspect_pixel(subject.loaded->records(), look_of(parse_json(request.body, "look"), subject), x, y));
+  ordered_json out =
+      inspect_pixel(subject.loaded->records(), look_of(parse_json(request.body, "look"), subject),
+                    scaled(x, width, m.width), scaled(y, height, m.height));
+  out["pixel"] = {x, y};
+  return answer_of(out);
 }
 
 Answer Api::channel(const Request& request, Query& query) {

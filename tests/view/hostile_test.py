@@ -58,7 +58,8 @@ def wrong_queries(server):
                   "scale=1&scale=2", "data=1", "data=-1", "data=live", "data=../x", "frame=-1", "frame=1.5", "format=bmp",
                   "nonsense=1", "%", "%zz=1", "=", "&&", "scale=%31%00"]:
         refused(server.request("POST", "api/frame?" + query, {}), query)
-    for query in ["x=1", "x=-1&y=0", "x=264&y=0", "x=0&y=30", "x=1e3&y=0", "x=2147483648&y=0", "x=NaN&y=0"]:
+    for query in ["x=1", "x=-1&y=0", "x=264&y=0", "x=0&y=30", "x=1e3&y=0", "x=2147483648&y=0", "x=NaN&y=0",
+                  "x=0&y=0&width=0", "x=264&y=0&width=264", "x=0&y=30&height=30", "x=0&y=0&height=1e3", "x=0&y=0&width=99999999999"]:
         refused(server.request("POST", "api/pixel?" + query, {}), query)
     for path in ["api/histogram?object=moon", "api/histogram?object=earth&bins=0", "api/histogram?object=earth&bins=1e9",
                  "api/histogram?object=earth&channel=Z%27", "api/images?object=", "api/images", "api/channel?name=nothing",

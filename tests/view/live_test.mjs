@@ -86,6 +86,16 @@ test("a dragged camera and a moved object are traced again, and saved", async ()
   const got = await page.evaluate(() => window.nullcone.api.json("api/pixel", {query: {data: "live", x: 160, y: 90}, body: {}}));
   delete got.spectra;
   assert.deepEqual(got, JSON.parse(tool("info", second.data, "--json", "--pixel", "160,90")));
+
+  // While something moves what is traced is coarser than the picture whose pixels are asked about.
+  const coarse = await page.evaluate(async () => {
+    const {api, live} = window.nullcone;
+    await api.frame({data: 0, scale: 4, format: "raw"}, {scene: live.source.changes, look: {}}, "api/trace");
+    const pixel = (x, y) => api.json("api/pixel", {query: {data: "live", x, y, width: 320, height: 180}, body: {}});
+    return [await pixel(160, 90), await pixel(319, 179)];
+  });
+  assert.deepEqual(coarse.map(({pixel}) => pixel), [[160, 90], [319, 179]]);
+  assert.deepEqual(coarse[0].hits.map(({object}) => object), got.hits.map(({object}) => object));
   assert.deepEqual(page.faults, []);
   await page.context().close();
   await server.stop();

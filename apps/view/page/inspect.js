@@ -1,6 +1,6 @@
 // The panel "Pixel": all records under the pointer as a table, and the spectra of what is seen there.
 
-import {firstLine, html, newestWins, svg, text} from "./plot.js";
+import {html, newestWins, pixelRecords, svg, text} from "./plot.js";
 import {spectrumPlot} from "./spectrum_plot.js";
 
 const kPause = 60;   // ms between two requests while the pointer moves
@@ -88,11 +88,9 @@ class Inspection {
   }
 
   async #fetch(x, y) {
-    const {data, frame} = this.#app.view, first = firstLine(this.#app);
     if (x >= this.#app.picture.width || y >= this.#app.picture.height) return;
     try {
-      const body = this.#app.store.look;
-      this.#shown = await this.#app.api.json("api/pixel", {query: {data, frame, x, y: y + first}, body});
+      this.#shown = await pixelRecords(this.#app, x, y);
       this.#draw();
       if (this.#pinned && this.#at.x === x && this.#at.y === y) this.#app.say(this.#sentence());
     } catch (error) {

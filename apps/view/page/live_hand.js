@@ -1,5 +1,6 @@
 // Pointer and keys that move the camera, the observer and objects of a live scene.
 
+import {pixelRecords} from "./plot.js";
 import {cameraAxes, scaled, sum} from "./relativity.js";
 import {angles, extent, lookedRound, pixelFrame} from "./scene_numbers.js";
 
@@ -89,9 +90,9 @@ export class LiveHand {
   async #pick({x, y, inside}) {
     if (!inside) return;
     const object = (this.#object = {dx: 0, dy: 0});
-    const {scene, type} = this.#live, {data} = this.#app.view;
+    const {scene, type} = this.#live;
     try {
-      const {hits} = await this.#app.api.json("api/pixel", {query: {data, x, y}, body: this.#app.store.look});
+      const {hits} = await pixelRecords(this.#app, x, y);
       const hit = hits.find((one) => scene.look.objects[one.object] && Number.isFinite(one.Z));
       if (!hit) return this.#app.say("There is no object here that can be moved.");
       const start = scene.look.objects[hit.object].event;

@@ -1,4 +1,4 @@
-// What plots share: scales, ticks, numbers as text, and elements. The first three are pure.
+// What plots and panels share: scales, ticks, numbers as text, elements and requests. The first three are pure.
 
 /** From a value to a place in [0, length]; `kind` "linear" or "log". Clamped to the ends. */
 export function scaleOf({ from, to, kind = "linear" }, length) {
@@ -74,6 +74,13 @@ export function newestWins(call) {
 
 /** Line of the whole picture at which the canvas begins; what is traced live is whole. */
 export const firstLine = (app) => (app.view.data === "live" ? 0 : app.dataset.first_line ?? 0);
+
+/** All that is known of a pixel of the canvas. What is traced while something moves may be coarser than that. */
+export function pixelRecords(app, x, y) {
+  const {data, frame} = app.view, {width, height} = app.picture;
+  const query = {data, frame, x, y: y + firstLine(app), ...(data === "live" ? {width, height} : {})};
+  return app.api.json("api/pixel", {query, body: app.store.look});
+}
 
 /** The names of the dataset's objects; chosen stays what was, or becomes what the page has selected. */
 export function fillObjects(select, app) {

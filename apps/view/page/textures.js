@@ -1,5 +1,6 @@
 // Pictures from the user's disk as textures: dropped on the object's panel or on the object in the picture, or chosen.
 
+import {pixelRecords} from "./plot.js";
 import {make} from "./widgets.js";
 import {pointerTo} from "./look_patch.js";
 import {newSpectrum} from "./spectrum_fields.js";
@@ -45,9 +46,7 @@ export function setup(app) {
 /** Name of the object that is seen at a pixel of the canvas, null where there is none. */
 export async function objectAt(app, {x, y, inside = true}) {
   if (!inside) return null;
-  const {data, frame} = app.view;
-  const query = {data, frame, x, y: y + (app.dataset.first_line ?? 0)};
-  const answer = await app.api.json("api/pixel", {query, body: app.store.look});
+  const answer = await pixelRecords(app, x, y);
   return answer.hits?.[0]?.object ?? null;
 }
 
