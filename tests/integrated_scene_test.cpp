@@ -147,5 +147,52 @@ TEST(Integrated, AWormholeShowsTwoSkies) {
   });
 }
 
+/// A picture in a wormhole of throat 1: an object of the chart, both skies, an observer on the x axis.
+Traced in_wormhole(double from, double towards, const std::string& shape, double centre) {
+  return trace_text(R"({"metric": {"name": "ellis_wormhole"}, "observer": {"event": )" +
+                    numbers({0, from, 0, 0}) + R"(}, "camera": {"type": "perspective", "forward": )" +
+                    numbers({towards, 0, 0}) + R"(, "fov_deg": 50, "resolution": [81, 81]}, "objects": [
+    {"name": "ball", "shape": )" +
+                    shape + R"(, "placing": {"type": "coordinate",
+      "z_axis": [1, 0, 0], "centre": )" +
+                    numbers({centre, 0, 0}) + R"(}},
+    {"name": "here", "shape": {"type": "sky"}}, {"name": "there", "shape": {"type": "sky", "side": 2}}]})");
+}
+
+TEST(Integrated, TheOtherSideOfAWormholeIsSeenAsFromThere) {
+  // X -> X/(4 rho^2) is an isometry: of spheres it makes spheres, of left right. This one is near the other
+  // side's infinity, nearer than it is large.
+  const double c = 0.1, r = 0.075, power = 4 * (c * c - r * r), from = 4;
+  const auto sphere = [](double radius) {
+    return R"({"type": "sphere", "radius": )" + std::to_string(radius) + "}";
+  };
+  const Traced a = in_wormhole(from, -1, sphere(r), c),
+               b = in_wormhole(1 / (4 * from), 1, sphere(r / power), c / power);
+  std::vector<HitRecord> other(81 * 81);
+  b.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) { other[81 * y + 80 - x] = hit; });
+  ASSERT_EQ(a.hits(), 81U * 81U);
+  ASSERT_EQ(b.hits(), 81U * 81U);
+  std::size_t on_ball = 0, elsewhere = 0;
+  a.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) {
+    const HitRecord& twin = other[81 * y + x];
+    if (hit.id != (twin.id == 1 ? 1 : 5 - twin.id)) return void(++elsewhere);
+    if (hit.id != 1) return;
+    ++on_ball;
+    EXPECT_NEAR(hit.t, twin.t, 1e-5);
+    EXPECT_NEAR(hit.Z, twin.Z, 1e-5);
+    EXPECT_NEAR(hit.mu, twin.mu, 1e-5 / std::max(hit.mu, 0.01));
+  });
+  EXPECT_GT(on_ball, 100U);
+  EXPECT_LE(elsewhere, 8U) << "rays that graze";
+}
+
+TEST(Integrated, RaysEscapeThroughARingAboutTheOtherInfinity) {
+  const Traced seen = in_wormhole(4, -1, R"({"type": "ring", "inner_radius": 0.1, "radius": 0.3})", 0.05);
+  EXPECT_EQ(seen.hits(), 81U * 81U);
+  std::array<std::size_t, 4> of{};
+  seen.for_each_hit([&](const HitRecord& hit, std::size_t, std::size_t) { ++of[hit.id]; });
+  for (const std::size_t id : {1, 2, 3}) EXPECT_GT(of[id], 100U) << id;
+}
+
 }  // namespace
 }  // namespace nullcone::test

@@ -118,28 +118,29 @@ class IntegratedTracer final : public Tracer {
     if constexpr (std::is_same_v<Map, CourseMap<M>>) {
       const Tube& tube = marched.body.tube;
       made.centre = tube.centre, made.chart_ball = tube.radius;
-      for (std::size_t i = 0; i < tube.count; ++i)
-        keep_rays_for(norm(tube.parts[i].centre) + tube.parts[i].radius,
-                      norm(tube.parts[i].centre) - tube.parts[i].radius);
+      for (std::size_t i = 0; i < tube.count; ++i) keep_rays_for(tube.parts[i].centre, tube.parts[i].radius);
+    } else if constexpr (std::is_same_v<Map, FixedMap>) {
+      made.centre = marched.map.centre;
+      made.chart_ball = marched.map.stretch * ball;
+      keep_rays_for(made.centre, made.chart_ball);
     } else {
       const double far = object.placing.worldline.is_static() ? 1 : 1e12;  // what moves may be met far away
       for (int n = 0; n < 64; ++n) {  // a little room, for the ball is round only to first order
-        const double distance = norm(spatial(marched.body.event(0.0, ball * golden_point(n, 64))));
-        keep_rays_for(far * (1.2 * distance + ball), 0.8 * distance - ball);
+        const Vec3<double> there = spatial(marched.body.event(0.0, ball * golden_point(n, 64)));
+        keep_rays_for(Vec3<double>{}, far * (1.2 * norm(there) + ball));
       }
-    }
-    if constexpr (std::is_same_v<Map, FixedMap>) {
-      made.centre = marched.map.centre;
-      made.chart_ball = marched.map.stretch * ball;
     }
     made.marched = marched;
     clocks_[number - 1] = clock;
     return true;
   }
-  /// Objects lie between these distances from the origin: no ray may escape before it has passed them.
-  void keep_rays_for(double farthest, double nearest) {
-    setting_.reach = std::max(setting_.reach, farthest);
-    setting_.inside = std::max(std::min(setting_.inside, nearest), 0.0);
+  /// No ray may escape before it has passed a ball that holds an object or a part of its way. Of one that
+  /// holds the origin, where a spacetime may have another infinity, a millionth of its radius about that is
+  /// left out.
+  void keep_rays_for(const Vec3<double>& centre, double radius) {
+    const double distance = norm(centre);
+    setting_.reach = std::max(setting_.reach, distance + radius);
+    setting_.inside = std::min(setting_.inside, std::max(distance - radius, 1e-6 * radius));
   }
 
   template <class Stepper>
