@@ -70,7 +70,8 @@ TraceFrames::TraceFrames(std::string source, WholeJson scene, std::string output
 Scene TraceFrames::scene(int frame) const {
   const std::string where = place(frame);
   return file_.read([&] {
-    return read_scene(canonical_json(scene_at(file_.document, frames_, frame, source_)), where, metrics_);
+    return read_scene(canonical_json(scene_at(file_.document, frames_, frame, source_)), where, metrics_,
+                      meshes_.get());
   });
 }
 

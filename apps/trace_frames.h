@@ -8,6 +8,7 @@
 
 #include "apps/trace_job.h"
 #include "core/base/include.h"
+#include "core/scene/mesh_shelf.h"
 #include "core/scene/read_scene.h"
 #include "core/scene/sequence.h"
 
@@ -46,6 +47,7 @@ class TraceFrames {
   Frames frames_;
   std::vector<int> numbers_;
   std::vector<MetricDescription> metrics_;
+  std::unique_ptr<MeshShelf> meshes_ = std::make_unique<MeshShelf>();
 };
 
 /// What is believed of a file that is there.

@@ -52,7 +52,7 @@ inline Manifest manifest_of(const json& scene) {
   return out;
 }
 inline LiveScene live(const json& scene, const LiveLimits& limits = {}) {
-  return LiveScene(manifest_of(scene), "", limits);
+  return LiveScene(manifest_of(scene), "", nullptr, limits);
 }
 
 /// What is complained about; empty if nothing is.

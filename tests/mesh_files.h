@@ -24,9 +24,14 @@ class MeshFiles : public testing::Test {
   std::string path(const std::string& name) const { return folder_.file(name); }
   std::string scene() const { return path("scene.json"); }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
-  Shape read(const json& shape) const {
+  Shape read(const json& shape, MeshShelf& shelf) const {
     MeshHashes hashes;
-    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene(), hashes);
+    return read_shape(JsonObject(shape, scene(), "/objects/0/shape"), MetricDescription{}, scene(), shelf,
+                      hashes);
+  }
+  Shape read(const json& shape) const {
+    MeshShelf shelf;
+    return read(shape, shelf);
   }
   std::shared_ptr<const Mesh> mesh(const std::string& file) const {
     return read({{"type", "mesh"}, {"file", file}}).mesh;

@@ -137,7 +137,7 @@ Answer Api::trace(const Request& request, Query& query) {
   Stopwatch watch;
   auto scene = viewer->scenes.find(data);
   if (scene == viewer->scenes.end())
-    scene = viewer->scenes.emplace(data, LiveScene(entry.manifest, entry.path)).first;
+    scene = viewer->scenes.emplace(data, LiveScene(entry.manifest, entry.path, library_.meshes())).first;
   viewer->live =
       std::make_shared<const Loaded>(scene->second.trace(changes.scene, scale), library_.textures());
   return shown(*viewer, {viewer->live, "live", frame}, 1, query, changes.look, watch.lap());
@@ -152,7 +152,7 @@ Answer Api::save(const Request& request, Query& query) {
   const SceneChanges changes(request.body);
   looks_.parse(changes.look, entry.manifest, entry.frame);  // only what can be read again is kept
   const std::string path = folder_.file(std::to_string(serial_++) + ".exr");
-  LiveScene(entry.manifest, entry.path).save(changes.scene, changes.look, path);
+  LiveScene(entry.manifest, entry.path, library_.meshes()).save(changes.scene, changes.look, path);
   return sent_file(path, "dataset.exr", "image/x-exr");
 }
 

@@ -60,7 +60,7 @@ Answer Api::dataset(const Request& request, Query& query) {
           scene.value(json::json_pointer("/objects/" + std::to_string(i) + "/shape/type"), std::string())}});
   for (const ObjectEntry& lamp : m.lights) lights.push_back(lamp.name);
   const bool traced_here = subject.loaded == held.viewer->live;
-  const std::string hindrance = traced_here ? "" : LiveScene::hindrance(m, subject.name);
+  const std::string hindrance = traced_here ? "" : LiveScene::hindrance(m, subject.name, library_.meshes());
   return answer_of(ordered_json{{"name", std::filesystem::path(subject.name).filename().string()},
                                 {"path", subject.name},
                                 {"width", m.width},

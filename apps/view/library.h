@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/record/dataset.h"
+#include "core/scene/mesh_shelf.h"
 #include "postrender/renderer.h"
 
 namespace nullcone::view {
@@ -51,6 +52,8 @@ class Library {
   /// Reads it, unless it is there; whoever waits, waits for that one alone. Throws InputError.
   std::shared_ptr<const Loaded> get(std::size_t number);
   std::shared_ptr<postrender::TextureCache> textures() const { return textures_; }
+  /// Of scenes that are traced again.
+  MeshShelf* meshes() { return &meshes_; }
 
  private:
   struct Shelf {
@@ -62,6 +65,7 @@ class Library {
   std::vector<LibraryEntry> entries_;
   std::size_t most_bytes_;
   std::shared_ptr<postrender::TextureCache> textures_ = std::make_shared<postrender::TextureCache>();
+  MeshShelf meshes_;
   std::mutex mutex_;               ///< of all below
   std::vector<Shelf> shelves_;     ///< by number
   std::list<std::size_t> recent_;  ///< those that are loaded, the latest first

@@ -52,11 +52,11 @@ void check_work(const Scene& scene, double most) {
 
 /// Reads a scene as if its file stood beside the dataset. Complaints do not name that folder.
 Scene read_beside(const std::string& dataset, const std::string& text,
-                  std::span<const MetricDescription> metrics) {
+                  std::span<const MetricDescription> metrics, MeshShelf* meshes) {
   const std::string place = (std::filesystem::path(dataset).parent_path() / "scene").string(),
                     folder = place.substr(0, place.size() - std::string_view("scene").size());
   try {
-    return read_scene(text, place, metrics);
+    return read_scene(text, place, metrics, meshes);
   } catch (const InputError& error) {
     const std::string what = error.what(), shown = printable(folder, folder.size());
     const std::string line = what.starts_with(shown) ? what.substr(shown.size()) : what;
@@ -67,12 +67,12 @@ Scene read_beside(const std::string& dataset, const std::string& text,
 
 }  // namespace
 
-std::string LiveScene::hindrance(const Manifest& manifest, const std::string& dataset) {
+std::string LiveScene::hindrance(const Manifest& manifest, const std::string& dataset, MeshShelf* meshes) {
   if (manifest.scene.empty()) return "the dataset does not say of which scene it is";
   if (manifest.first_line != 0 || manifest.lines != manifest.height)
     return "the dataset is a part of a picture; expected a whole one (nullcone-merge)";
   try {
-    const Scene scene = read_beside(dataset, manifest.scene, metric_descriptions());
+    const Scene scene = read_beside(dataset, manifest.scene, metric_descriptions(), meshes);
     if (!scene.integrated) return {};
     const auto metrics = metric_descriptions();
     const auto metric = std::ranges::find(metrics, scene.metric, &MetricDescription::name);
@@ -83,9 +83,10 @@ std::string LiveScene::hindrance(const Manifest& manifest, const std::string& da
   }
 }
 
-LiveScene::LiveScene(const Manifest& manifest, const std::string& dataset, const LiveLimits& limits)
-    : dataset_(dataset), limits_(limits) {
-  if (const std::string reason = hindrance(manifest, dataset); !reason.empty())
+LiveScene::LiveScene(const Manifest& manifest, const std::string& dataset, MeshShelf* meshes,
+                     const LiveLimits& limits)
+    : dataset_(dataset), meshes_(meshes), limits_(limits) {
+  if (const std::string reason = hindrance(manifest, dataset, meshes_); !reason.empty())
     throw InputError("scene", reason);
   scene_ = parse_json(manifest.scene, "scene");
   for (const MetricDescription& metric : metric_descriptions())
@@ -98,7 +99,7 @@ Scene LiveScene::changed(const json& changes, const json& look, int scale) const
   apply_changes(changes, metric_, scene);
   make_coarser(scene, scale);
   if (!look.is_null()) scene["look"] = look;
-  return read_beside(dataset_, canonical_json(scene), {&metric_, 1});
+  return read_beside(dataset_, canonical_json(scene), {&metric_, 1}, meshes_);
 }
 
 Dataset LiveScene::trace(const json& changes, int scale) const {

@@ -20,11 +20,13 @@ struct LiveLimits {
 class LiveScene {
  public:
   /// Why the scene of a dataset, which was read from the file `dataset`, cannot be traced live, in one line;
-  /// empty if it can. Meshes are looked for beside that file.
-  static std::string hindrance(const Manifest& manifest, const std::string& dataset);
+  /// empty if it can. Meshes are looked for beside that file, unless they are on the shelf.
+  static std::string hindrance(const Manifest& manifest, const std::string& dataset,
+                               MeshShelf* meshes = nullptr);
 
-  /// Throws InputError where there is a hindrance.
-  LiveScene(const Manifest& manifest, const std::string& dataset, const LiveLimits& limits = {});
+  /// Throws InputError where there is a hindrance. The shelf, if there is one, stays where it is.
+  LiveScene(const Manifest& manifest, const std::string& dataset, MeshShelf* meshes = nullptr,
+            const LiveLimits& limits = {});
 
   /// Traces the scene with `changes` (scene_changes.h) in memory, its resolution divided by `scale` (1 to 8),
   /// with one ray a pixel where that is not 1; without fingerprints. Throws InputError with the place of what
@@ -41,6 +43,7 @@ class LiveScene {
   nlohmann::json scene_;
   std::string dataset_;
   MetricDescription metric_;
+  MeshShelf* meshes_;
   LiveLimits limits_;
 };
 

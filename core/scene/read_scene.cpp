@@ -42,10 +42,10 @@ const MetricDescription& read_metric(JsonObject metric, std::span<const MetricDe
 }
 
 Object read_object(JsonObject object, const MetricDescription& metric, std::set<std::string>& taken,
-                   const std::string& place, MeshHashes& hashes) {
+                   const std::string& place, MeshShelf& meshes, MeshHashes& hashes) {
   Object out;
   out.name = object.name("name", taken);
-  out.shape = read_shape(object.object("shape"), metric, place, hashes);
+  out.shape = read_shape(object.object("shape"), metric, place, meshes, hashes);
   if (out.shape.type != ShapeType::sky) read_placing(object.object("placing"), out);
   out.opacity = object.number_or("opacity", 1, 0, 1);
   out.transparent = object.boolean("transparent", out.opacity < 1);
@@ -103,7 +103,9 @@ void read_paths(JsonObject& root, const MetricDescription& metric, Scene& scene)
 }  // namespace
 
 Scene read_scene(const std::string& text, const std::string& place,
-                 std::span<const MetricDescription> metrics) {
+                 std::span<const MetricDescription> metrics, MeshShelf* shelf) {
+  MeshShelf own;
+  MeshShelf& meshes = shelf ? *shelf : own;
   nlohmann::json document = parse_json(text, place);
   JsonObject root(document, place, "");
   refuse_sequence(document, place);
@@ -118,7 +120,7 @@ Scene read_scene(const std::string& text, const std::string& place,
   std::vector<MeshHashes> hashes;
   for (JsonObject& object : root.objects("objects")) {
     if (scene.objects.size() == 1000) root.refuse("objects", "expected at most 1000 objects");
-    scene.objects.push_back(read_object(object, metric, names, place, hashes.emplace_back()));
+    scene.objects.push_back(read_object(object, metric, names, place, meshes, hashes.emplace_back()));
     if (scene.objects.back().shape.type != ShapeType::sky) continue;
     if (std::exchange(sky[scene.objects.back().shape.sky], true))
       object.refuse("shape/type", "is a second sky; expected one at most");

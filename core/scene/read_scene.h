@@ -10,6 +10,8 @@
 
 namespace nullcone {
 
+class MeshShelf;
+
 /// One parameter of a metric, as scenes and command lines name it.
 struct MetricParameter {
   std::string_view name;
@@ -30,8 +32,9 @@ struct MetricDescription {
 
 /// Reads a scene from JSON text; `place` (a file's name) stands before complaints. `max_lookback` stays 0
 /// where the scene does not give one: the spacetime then says what suits it. Throws InputError, also for a
-/// sequence (see scene_at()).
+/// sequence (see scene_at()). Meshes are taken from the shelf, if there is one, and put there: give it to all
+/// readings that may have the same ones.
 Scene read_scene(const std::string& text, const std::string& place,
-                 std::span<const MetricDescription> metrics);
+                 std::span<const MetricDescription> metrics, MeshShelf* shelf = nullptr);
 
 }  // namespace nullcone

@@ -29,7 +29,7 @@ void read_edges(JsonObject& shape, std::size_t count, Shape& out) {
 }  // namespace
 
 Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::string& scene,
-                 MeshHashes& hashes) {
+                 MeshShelf& meshes, MeshHashes& hashes) {
   Shape out;
   const std::string type = shape.word("type", {"sphere", "ellipsoid", "box", "cylinder", "disk", "ring",
                                                "quad", "union", "intersection", "difference", "mesh", "sky"});
@@ -45,7 +45,7 @@ Shape read_shape(JsonObject shape, const MetricDescription& metric, const std::s
       read_edges(shape, 3, out);
     } else if (type == "mesh") {
       out.type = ShapeType::mesh;
-      out.mesh = read_mesh(shape, scene, hashes);
+      out.mesh = read_mesh(shape, scene, meshes, hashes);
     } else {
       out.type = ShapeType::solid;
       out.solid = read_solid(shape, type);
