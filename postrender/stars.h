@@ -31,9 +31,9 @@ Direction direction_of(double right_ascension_deg, double declination_deg);
 struct Box {
   std::array<float, 3> low, high;
   bool meets(const Box& other) const {
-    bool out = true;
-    for (std::size_t i = 0; i < 3; ++i) out &= (low[i] <= other.high[i]) & (other.low[i] <= high[i]);
-    return out;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!(low[i] <= other.high[i] && other.low[i] <= high[i])) return false;
+    return true;
   }
 };
 

@@ -168,10 +168,10 @@ TEST(Integrated, TheOtherSideOfAWormholeIsSeenAsFromThere) {
   };
   const Traced a = in_wormhole(from, -1, sphere(r), c),
                b = in_wormhole(1 / (4 * from), 1, sphere(r / power), c / power);
-  std::vector<HitRecord> other(81 * 81);
-  b.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) { other[81 * y + 80 - x] = hit; });
   ASSERT_EQ(a.hits(), 81U * 81U);
   ASSERT_EQ(b.hits(), 81U * 81U);
+  std::vector<HitRecord> other(b.hits());
+  b.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) { other[81 * y + 80 - x] = hit; });
   std::size_t on_ball = 0, elsewhere = 0;
   a.for_each_hit([&](const HitRecord& hit, std::size_t x, std::size_t y) {
     const HitRecord& twin = other[81 * y + x];
@@ -191,7 +191,7 @@ TEST(Integrated, RaysEscapeThroughARingAboutTheOtherInfinity) {
   EXPECT_EQ(seen.hits(), 81U * 81U);
   std::array<std::size_t, 4> of{};
   seen.for_each_hit([&](const HitRecord& hit, std::size_t, std::size_t) { ++of[hit.id]; });
-  for (const std::size_t id : {1, 2, 3}) EXPECT_GT(of[id], 100U) << id;
+  for (const std::size_t id : {1U, 2U, 3U}) EXPECT_GT(of[id], 100U) << id;
 }
 
 }  // namespace
