@@ -14,5 +14,4 @@ NULLCONE_NOISE=30000 /usr/bin/python3 tests/view/hostile_test.py build/release/b
 /usr/bin/python3 tests/view/memory_test.py build/release/bin . 10000 1280 1024
 scripts/fuzz.sh "${NULLCONE_FUZZ_SECONDS:-600}"
 scripts/build.sh tsan trace_test
-# A long history: a write whose stack is forgotten cannot be told from one within libtbb.
-TSAN_OPTIONS="history_size=7 suppressions=$PWD/scripts/tsan.supp" build/tsan/bin/trace_test --gtest_filter='*Thread*:GoedelEarth.HasThe*'
+TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp" build/tsan/bin/trace_test --gtest_filter='*Thread*:GoedelEarth.HasThe*'

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/handover.h"
 #include "core/record/memory.h"
 #include "core/trace/course.h"
 #include "core/trace/follow.h"
@@ -71,9 +72,11 @@ struct BandCounter {
   }
 };
 
-/// Traces every band on `threads` threads. `convert` makes of each what shall be kept of it, in the thread
-/// that traced it; `take` gets these in order, one at a time. Only a few bands are in flight at once, so
-/// memory is bounded by what `take` keeps. Returns the processor time used.
+char pipelines = 0;  ///< what whoever begins one has done before, all its stages know
+
+/// Traces every band on `threads` threads: what `trace_one` makes of a band's first line `take` gets, in
+/// order, one at a time. Only a few bands are in flight at once, each in the place of one that is finished,
+/// so memory is bounded by what `take` keeps. Returns the processor time used.
 template <class Trace, class Take>
 double for_each_band(const Camera& camera, Lines lines, int threads, const Progress& progress,
                      const StopFlag* stop, const Trace& trace_one, const Take& take) {
@@ -82,24 +85,43 @@ double for_each_band(const Camera& camera, Lines lines, int threads, const Progr
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   std::atomic<long> nanoseconds = 0;
   BandCounter counter{camera, lines, progress};
+  std::vector<std::optional<decltype(trace_one(0))>> kept(static_cast<std::size_t>(bands_in_flight(threads)));
+  const auto place_of = [&](int line) -> auto& {
+    return kept[static_cast<std::size_t>((line - lines.first) / kBandLines) % kept.size()];
+  };
   const auto next = [&](tbb::flow_control& flow) {
+    take_over(&pipelines), take_over(&counter.next_line);
     if (counter.stopped || counter.next_line >= lines.end || (stop && *stop)) flow.stop();
-    return std::exchange(counter.next_line, counter.next_line + kBandLines);
+    const int line = std::exchange(counter.next_line, counter.next_line + kBandLines);
+    hand_over(&counter.next_line);
+    return line;
   };
-  using Kept = std::shared_ptr<decltype(trace_one(0))>;
-  const auto trace = [&](int first_line) -> Kept {
-    if (counter.stopped) return {};
+  const auto trace = [&](int line) {
+    take_over(&pipelines);
+    if (counter.stopped) return line;
+    auto& place = place_of(line);
+    take_over(&place);
     const double start = thread_seconds();
-    auto kept = std::make_shared<typename Kept::element_type>(trace_one(first_line));
+    place.emplace(trace_one(line));
     nanoseconds += static_cast<long>(1e9 * (thread_seconds() - start));
-    return kept;
+    hand_over(&place);
+    return line;
   };
-  const auto finish = [&](const Kept& kept) { counter.take_next([&] { take(std::move(*kept)); }); };
+  const auto finish = [&](int line) {
+    take_over(&pipelines), take_over(&counter.done_lines);
+    auto& place = place_of(line);
+    take_over(&place);
+    counter.take_next([&] { take(std::move(*place)); });
+    place.reset();
+    hand_over(&place), hand_over(&counter.done_lines);
+  };
   using tbb::filter_mode, tbb::make_filter;
-  tbb::parallel_pipeline(static_cast<std::size_t>(bands_in_flight(threads)),
-                         make_filter<void, int>(filter_mode::serial_in_order, next) &
-                             make_filter<int, Kept>(filter_mode::parallel, trace) &
-                             make_filter<Kept, void>(filter_mode::serial_in_order, finish));
+  hand_over(&pipelines);
+  tbb::parallel_pipeline(kept.size(),
+                         make_filter<void, int>(filter_mode::serial_in_order, unwatched(next)) &
+                             make_filter<int, int>(filter_mode::parallel, unwatched(trace)) &
+                             make_filter<int, void>(filter_mode::serial_in_order, unwatched(finish)));
+  take_over(&counter.next_line), take_over(&counter.done_lines);
   if (counter.failure) std::rethrow_exception(counter.failure);
   return 1e-9 * static_cast<double>(nanoseconds.load());
 }
