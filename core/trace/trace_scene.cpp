@@ -185,7 +185,7 @@ void check_memory(const Scene& scene, int bands, std::uint64_t available, const 
   const Camera& camera = scene.camera;
   const auto lines = std::min<std::int64_t>(camera.height, std::int64_t{kBandLines} * bands);
   const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(lines);
-  const auto samples = static_cast<std::uint64_t>(camera.samples * camera.samples);
+  const auto side = static_cast<std::uint64_t>(camera.samples), samples = side * side;
   const std::uint64_t needed =
       dataset_bytes(pixels, samples, scene.records.channels, scene.lights.all_paths());
   if (needed <= available) return;
