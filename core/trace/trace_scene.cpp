@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,38 +44,12 @@ void count_from_observation(Scene& scene) {
   for (Lamp& lamp : scene.lights.lamps) lamp.placing.worldline.event[0] -= now;
 }
 
-/// Takes bands in order, one at a time, and tells how far it has come. What is thrown is kept until the
-/// pipeline is empty: what is in flight when an exception crosses a pipeline of TBB is never freed.
-struct BandCounter {
-  const Camera& camera;
-  Lines lines;
-  const Progress& progress;
-  int next_line = lines.first, done_lines = lines.first;
-  std::atomic<bool> stopped = false;
-  std::exception_ptr failure = nullptr;
-
-  template <class Take>
-  void take_next(const Take& take) {
-    if (stopped) return;
-    try {
-      take();
-      done_lines = std::min(done_lines + kBandLines, lines.end);
-      const auto width = static_cast<std::size_t>(camera.width);
-      if (progress)
-        progress(width * static_cast<std::size_t>(done_lines - lines.first),
-                 width * static_cast<std::size_t>(lines.end - lines.first));
-    } catch (...) {
-      failure = std::current_exception();
-      stopped = true;
-    }
-  }
-};
-
 char pipelines = 0;  ///< what whoever begins one has done before, all its stages know
 
 /// Traces every band on `threads` threads: what `trace_one` makes of a band's first line `take` gets, in
 /// order, one at a time. Only a few bands are in flight at once, each in the place of one that is finished,
-/// so memory is bounded by what `take` keeps. Returns the processor time used.
+/// so memory is bounded by what `take` keeps. Returns the processor time used. What `take` or `progress`
+/// throws ends it.
 template <class Trace, class Take>
 double for_each_band(const Camera& camera, Lines lines, int threads, const Progress& progress,
                      const StopFlag* stop, const Trace& trace_one, const Take& take) {
@@ -84,21 +57,20 @@ double for_each_band(const Camera& camera, Lines lines, int threads, const Progr
   if (threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   std::atomic<long> nanoseconds = 0;
-  BandCounter counter{camera, lines, progress};
+  int next_line = lines.first, done_lines = lines.first;
   std::vector<std::optional<decltype(trace_one(0))>> kept(static_cast<std::size_t>(bands_in_flight(threads)));
   const auto place_of = [&](int line) -> auto& {
     return kept[static_cast<std::size_t>((line - lines.first) / kBandLines) % kept.size()];
   };
   const auto next = [&](tbb::flow_control& flow) {
-    take_over(&pipelines), take_over(&counter.next_line);
-    if (counter.stopped || counter.next_line >= lines.end || (stop && *stop)) flow.stop();
-    const int line = std::exchange(counter.next_line, counter.next_line + kBandLines);
-    hand_over(&counter.next_line);
+    take_over(&pipelines), take_over(&next_line);
+    if (next_line >= lines.end || (stop && *stop)) flow.stop();
+    const int line = std::exchange(next_line, next_line + kBandLines);
+    hand_over(&next_line);
     return line;
   };
   const auto trace = [&](int line) {
     take_over(&pipelines);
-    if (counter.stopped) return line;
     auto& place = place_of(line);
     take_over(&place);
     const double start = thread_seconds();
@@ -108,12 +80,17 @@ double for_each_band(const Camera& camera, Lines lines, int threads, const Progr
     return line;
   };
   const auto finish = [&](int line) {
-    take_over(&pipelines), take_over(&counter.done_lines);
+    take_over(&pipelines), take_over(&done_lines);
     auto& place = place_of(line);
     take_over(&place);
-    counter.take_next([&] { take(std::move(*place)); });
+    take(std::move(*place));
     place.reset();
-    hand_over(&place), hand_over(&counter.done_lines);
+    done_lines = std::min(done_lines + kBandLines, lines.end);
+    const auto width = static_cast<std::size_t>(camera.width);
+    if (progress)
+      progress(width * static_cast<std::size_t>(done_lines - lines.first),
+               width * static_cast<std::size_t>(lines.end - lines.first));
+    hand_over(&place), hand_over(&done_lines);
   };
   using tbb::filter_mode, tbb::make_filter;
   hand_over(&pipelines);
@@ -121,8 +98,7 @@ double for_each_band(const Camera& camera, Lines lines, int threads, const Progr
                          make_filter<void, int>(filter_mode::serial_in_order, unwatched(next)) &
                              make_filter<int, int>(filter_mode::parallel, unwatched(trace)) &
                              make_filter<int, void>(filter_mode::serial_in_order, unwatched(finish)));
-  take_over(&counter.next_line), take_over(&counter.done_lines);
-  if (counter.failure) std::rethrow_exception(counter.failure);
+  take_over(&next_line), take_over(&done_lines);
   return 1e-9 * static_cast<double>(nanoseconds.load());
 }
 
